@@ -1,0 +1,52 @@
+#pragma once
+
+#include "formfactor/ray_caster.h"
+#include "meshing/patch_locator.h"
+#include "meshing/patch_mesh.h"
+
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+namespace patchlight {
+
+enum class FormFactorMethod { hemisphere };
+
+/// The set of directions over the hemisphere.
+enum class HemisphereDirections {
+    stratified,    ///< cosine-weighted, one a stratum, seeded: ΔF = 1/n each
+    regular_grid,  ///< the lecture's: Δφ = Δθ = 2π/k, ring m at its middle, weighed exactly by sin² of its borders / k
+    lecture_grid   ///< the same directions with the lecture's ΔF = (2π/k²) sin 2θ, which sums to Δθ·cot Δθ
+};
+
+struct FormFactorOptions {
+    FormFactorMethod method = FormFactorMethod::hemisphere;
+    HemisphereDirections directions = HemisphereDirections::stratified;
+    int rays = 512;              ///< per patch, 16 … 65536; rounded up to what the directions allow
+    int shadow_rays = 16;        ///< per patch and small source, 4 … 4096
+    double small_source = 0.2;   ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
+    std::uint64_t seed = 1;
+};
+
+/// Fractions F_ij of the power leaving patch i that reach patches j, j ascending.
+struct FormFactorRow {
+    std::vector<PatchId> patches;
+    std::vector<double> factors;
+    double raw_sum = 0;   ///< before small sources were seen by Lambert's formula
+    double escaped = 0;   ///< fraction that meets no surface
+    double backs = 0;     ///< fraction that meets a black back
+};
+
+/// Rows of F, compressed. Not reciprocal: sampled rows only gather.
+struct FormFactorMatrix {
+    std::vector<std::size_t> row_start;  ///< patches + 1
+    std::vector<std::uint32_t> columns;  ///< ascending in each row
+    std::vector<float> factors;
+    PatchField<double> raw_sum, escaped, backs;
+    std::size_t rays = 0;
+
+    std::size_t size() const { return row_start.empty() ? 0 : row_start.size() - 1; }
+};
+
+}  // namespace patchlight

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "meshing/patch_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// How surfaces are cut into patches.
+struct MeshingOptions {
+    double max_edge = 0;           ///< longest edge of the uniform mesh, m; 0 = a twelfth of the scene's diameter
+    double min_angle = 20;         ///< degrees, 0 … 20.7; angles between the input's own edges are exempt
+    std::size_t max_elements = 0;  ///< budget of triangles, 0 = none; refine() never returns more
+};
+
+/// What marking asks of refinement: plain data. Empty = nothing left to do.
+struct RefinementPlan {
+    struct Split {
+        PatchId patch;
+        double target_edge = 0;  ///< m: the patches that cover it shall have no longer edge
+    };
+    std::vector<Split> splits;  ///< the most wanted first
+
+    bool empty() const { return splits.empty(); }
+};
+
+/// For each new patch the old patches that it covers. Delaunay refinement isn't nested: a new patch may lie
+/// over several old ones.
+struct PatchTransfer {
+    struct Overlap {
+        PatchId old_patch;
+        double area = 0;  ///< m² common to both
+    };
+    std::vector<std::uint32_t> start;  ///< new_patches + 1: where the overlaps of each new patch begin
+    std::vector<Overlap> overlaps;     ///< they sum to the new patch's area, over an old patch to the old one's
+};
+
+struct Refinement {
+    PatchMesh mesh;
+    PatchTransfer transfer;
+};
+
+/// The uniform mesh: per surface a constrained Delaunay triangulation of its polygon, refined by Delaunay
+/// meshing until no edge is longer than `max_edge` and no angle smaller than `min_angle`. With `max_elements`
+/// and no max_edge: the longest edge that gives between 0.8 N and N triangles (as near below N as the input's
+/// own edges permit). Surfaces are meshed independently, on all threads; the result does not depend on their number.
+PatchMesh triangulate(const Scene& scene, const MeshingOptions& options);
+
+/// Splits what the plan asks for: longest edges are bisected in the surface's constrained Delaunay
+/// triangulation, neighbours as far as the shape bound needs it. Old vertices stay. An empty plan gives the same
+/// mesh. When the budget doesn't reach, the plan's first splits are honoured.
+/// Source: Rivara's Lepp–Delaunay midpoint insertion [Rivara97].
+Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
+
+/// Carries a value per patch to the new mesh, weighted by common area: Σ A_i x_i is conserved.
+PatchField<Rgb> prolong(const PatchMesh& new_mesh, const PatchField<Rgb>& values, const PatchTransfer& transfer);
+
+}  // namespace patchlight

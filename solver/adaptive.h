@@ -1,0 +1,97 @@
+#pragma once
+
+#include "formfactor/form_factors.h"
+#include "meshing/refinement.h"
+#include "solver/estimate.h"
+#include "solver/gather.h"
+#include "solver/progress.h"
+#include "solver/radiosity.h"
+#include "solver/solve.h"
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+
+namespace patchlight {
+
+enum class Refine { none, intensity };
+
+/// Everything solve_adaptively needs to know.
+struct AdaptiveOptions {
+    MeshingOptions meshing;         ///< of the first, uniform mesh (with Refine::none: the only one)
+    FormFactorOptions form_factors;
+    SolveOptions rough{.solver = Solver::progressive, .tolerance = 0.05};
+    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};
+    GatherOptions gather;
+    EstimateOptions estimate;
+    MarkOptions mark;
+    Refine refine = Refine::intensity;
+    int iterations = 12;              ///< adaptive cycles at most, ≥ 1
+    double target_error = 0;         ///< stop when the estimated error is below; 0 = go on to the budget
+    std::size_t max_elements = 8000;  ///< budget of patches
+};
+
+/// Where the light went, W, three bands together. emitted = absorbed + escaped, but for the error.
+struct EnergyBalance {
+    double emitted = 0;   ///< Σ A E
+    double absorbed = 0;  ///< Σ A (1 − ρ) H, and what met black backs
+    double escaped = 0;   ///< what met nothing
+    double relative_residual = 0;  ///< (emitted − absorbed − escaped) / emitted; raw, nothing is normalised
+};
+
+/// Wall seconds of one cycle, for timing.json only.
+struct StageSeconds {
+    double mesh = 0, assemble = 0, solve = 0, gather = 0, estimate = 0;
+};
+
+enum class Stage { uniform, rough, adaptive, final };
+
+/// One record a cycle, to the observer. References live until the observer returns.
+struct AdaptiveStep {
+    int cycle = 0;
+    Stage stage = Stage::rough;
+    const PatchMesh& mesh;
+    const Radiosity& B;                ///< per patch
+    const VertexRadiosity& vertex_B;   ///< the linear reconstruction
+    const SolveReport& solved;
+    const ErrorEstimate& error;
+    const EnergyBalance& energy;
+    std::size_t splits = 0;            ///< how many patches the plan splits next
+    std::size_t rays = 0;              ///< traced in this cycle
+    const StageSeconds& seconds;
+};
+using StepObserver = std::function<void(const AdaptiveStep&)>;
+
+/// A finished cycle of an interrupted run, to go on from.
+struct AdaptiveStart {
+    int cycle = 0;
+    PatchMesh mesh;
+    Radiosity B;
+    ErrorEstimate error;
+};
+
+/// Who is told, and who may stop it.
+struct AdaptiveObservers {
+    StepObserver on_step;
+    ProgressObserver on_progress;
+    std::stop_token stop;
+};
+
+struct AdaptiveSolution {
+    PatchMesh mesh;
+    Radiosity B;
+    VertexRadiosity vertex_B;
+    ErrorEstimate error;
+    EnergyBalance energy;
+    SolveReport solved;
+    bool converged = false;  ///< the linear solve met its tolerance, and target_error, if asked for, was met
+};
+
+/// THE loop: uniform mesh → rough radiosity → evaluation → intensity-adaptive mesh → … → final radiosity.
+/// The answer depends on scene and options only, not on the number of threads.
+/// Throws Interrupted when observers.stop is requested; the steps already observed are whole.
+AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,
+                                  const AdaptiveObservers& observers = {},
+                                  std::optional<AdaptiveStart> start = std::nullopt);
+
+}  // namespace patchlight

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string_view>
+
+namespace patchlight {
+
+/// Where a long computation stands.
+struct Progress {
+    std::string_view stage;    ///< mesh, assemble, solve, gather, estimate
+    int cycle = 0;
+    double fraction = 0;       ///< of this stage, 0 … 1
+    std::size_t elements = 0;
+    std::size_t rays = 0;      ///< traced so far in this stage
+    double unshot = -1;        ///< share of the emitted power not yet shot; -1 = does not apply
+};
+
+/// Called from one thread at a time, some times a second.
+using ProgressObserver = std::function<void(const Progress&)>;
+
+/// Thrown when the caller's stop token asks to stop: nothing of the running step is kept.
+class Interrupted : public std::runtime_error {
+public:
+    Interrupted() : std::runtime_error("interrupted") {}
+};
+
+}  // namespace patchlight
