@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshing/patch_locator.h"
 #include "meshing/patch_mesh.h"
 
 #include <cstddef>
@@ -53,6 +54,9 @@ PatchMesh triangulate(const Scene& scene, const MeshingOptions& options);
 /// mesh. When the budget doesn't reach, the plan's first splits are honoured.
 /// Source: Rivara's Lepp–Delaunay midpoint insertion [Rivara97].
 Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
+
+/// Which old patches each new one covers, by clipping them against each other in their surface's plane.
+PatchTransfer overlap(const PatchMesh& old_mesh, const PatchLocator& old_locator, const PatchMesh& new_mesh);
 
 /// Carries a value per patch to the new mesh, weighted by common area: Σ A_i x_i is conserved.
 PatchField<Rgb> prolong(const PatchMesh& new_mesh, const PatchField<Rgb>& values, const PatchTransfer& transfer);

@@ -1,0 +1,189 @@
+#include "formfactor/ray_caster.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <limits>
+#include <stdexcept>
+
+namespace patchlight {
+
+namespace {
+
+constexpr std::size_t width = 8;  // one kernel throughout: packets of 8
+
+/// Where a triangle's corner 0 and its edges lie in the plane of the surface on one side.
+struct PlaneSide {
+    float x0, y0, x1, y1, x2, y2;  // corner, then the two edge vectors from it
+    std::uint32_t surface;
+};
+
+/// The widest instruction set that we allow: with AVX-512 Embree's hits differ in the last bits, and packets
+/// of 8 gain nothing from it.
+const char* instruction_set_of_this_machine()
+{
+    if (__builtin_cpu_supports("avx2")) return "avx2";
+    if (__builtin_cpu_supports("sse4.2")) return "sse4.2";
+    return "sse2";
+}
+
+PlaneSide side_of(const Scene& scene, const SceneTriangle& triangle, SurfaceId surface)
+{
+    if (!surface.valid()) return {0, 0, 0, 0, 0, 0, HitBatch::black_back};
+    const PlaneFrame& frame = scene.surface(surface).frame;
+    std::array<Vec2, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = frame.to_plane(scene.vertices[triangle.vertices[k]]);
+    const auto f = [](double x) { return static_cast<float>(x); };
+    return {f(p[0].x), f(p[0].y), f(p[1].x - p[0].x), f(p[1].y - p[0].y), f(p[2].x - p[0].x), f(p[2].y - p[0].y),
+            surface.value};
+}
+
+}  // namespace
+
+struct RayCaster::Impl {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<std::array<PlaneSide, 2>> sides;  // of each triangle: front, back
+    std::string isa;
+
+    ~Impl()
+    {
+        if (scene != nullptr) rtcReleaseScene(scene);
+        if (device != nullptr) rtcReleaseDevice(device);
+    }
+};
+
+void RayBatch::resize(std::size_t n)
+{
+    size_ = n;
+    const std::size_t padded = (n + width - 1) / width * width;
+    for (auto* array : {&ox, &oy, &oz, &dx, &dy, &dz, &reach})
+        if (array->size() < padded) array->resize(padded, 1.0F);
+}
+
+void RayBatch::set(std::size_t i, const Vec3& origin, const Vec3& direction, float how_far)
+{
+    ox[i] = static_cast<float>(origin.x);
+    oy[i] = static_cast<float>(origin.y);
+    oz[i] = static_cast<float>(origin.z);
+    dx[i] = static_cast<float>(direction.x);
+    dy[i] = static_cast<float>(direction.y);
+    dz[i] = static_cast<float>(direction.z);
+    reach[i] = how_far;
+}
+
+RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offset_(1e-6 * scene.diameter)
+{
+    impl_->isa = instruction_set_of_this_machine();
+    impl_->device = rtcNewDevice(("isa=" + impl_->isa).c_str());
+    if (impl_->device == nullptr) throw std::runtime_error("Embree can't start on this machine");
+    impl_->scene = rtcNewScene(impl_->device);
+    rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+
+    RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.vertices.size()));
+    auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), scene.triangles.size()));
+    if (vertices == nullptr || triangles == nullptr) throw std::bad_alloc();
+    for (std::size_t v = 0; v < scene.vertices.size(); ++v)
+        for (int k = 0; k < 3; ++k) vertices[3 * v + static_cast<std::size_t>(k)] = static_cast<float>(scene.vertices[v][k]);
+    impl_->sides.reserve(scene.triangles.size());
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        const SceneTriangle& triangle = scene.triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) triangles[3 * t + k] = triangle.vertices[k];
+        impl_->sides.push_back({side_of(scene, triangle, triangle.front), side_of(scene, triangle, triangle.back)});
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(impl_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(impl_->scene);
+    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build the scene");
+}
+
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+RayCaster::~RayCaster() = default;
+
+std::string RayCaster::instruction_set() const { return impl_->isa; }
+
+void RayCaster::closest(const RayBatch& rays, HitBatch& hits) const
+{
+    const std::size_t n = rays.size();
+    hits.surface.resize(n);
+    hits.x.resize(n);
+    hits.y.resize(n);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(32) RTCRayHit8 packet;
+    alignas(32) std::array<int, width> valid;
+    for (std::size_t first = 0; first < n; first += width) {
+        for (std::size_t k = 0; k < width; ++k) {
+            packet.ray.org_x[k] = rays.ox[first + k];
+            packet.ray.org_y[k] = rays.oy[first + k];
+            packet.ray.org_z[k] = rays.oz[first + k];
+            packet.ray.dir_x[k] = rays.dx[first + k];
+            packet.ray.dir_y[k] = rays.dy[first + k];
+            packet.ray.dir_z[k] = rays.dz[first + k];
+            packet.ray.tnear[k] = 0;
+            packet.ray.tfar[k] = rays.reach[first + k];
+            packet.ray.time[k] = 0;
+            packet.ray.mask[k] = ~0U;
+            packet.ray.id[k] = 0;
+            packet.ray.flags[k] = 0;
+            packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+            valid[k] = first + k < n ? -1 : 0;
+        }
+        rtcIntersect8(valid.data(), impl_->scene, &context, &packet);
+        for (std::size_t k = 0; k < width && first + k < n; ++k) {
+            std::uint32_t surface = HitBatch::escaped;
+            float x = 0, y = 0;
+            if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
+                const float facing = packet.hit.Ng_x[k] * packet.ray.dir_x[k] + packet.hit.Ng_y[k] * packet.ray.dir_y[k]
+                    + packet.hit.Ng_z[k] * packet.ray.dir_z[k];
+                const PlaneSide& side = impl_->sides[packet.hit.primID[k]][facing < 0 ? 0 : 1];
+                surface = side.surface;
+                x = side.x0 + packet.hit.u[k] * side.x1 + packet.hit.v[k] * side.x2;
+                y = side.y0 + packet.hit.u[k] * side.y1 + packet.hit.v[k] * side.y2;
+            }
+            hits.surface[first + k] = surface;
+            hits.x[first + k] = x;
+            hits.y[first + k] = y;
+        }
+    }
+}
+
+void RayCaster::occluded(const RayBatch& rays, std::vector<std::uint8_t>& blocked) const
+{
+    const std::size_t n = rays.size();
+    blocked.resize(n);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(32) RTCRay8 packet;
+    alignas(32) std::array<int, width> valid;
+    for (std::size_t first = 0; first < n; first += width) {
+        for (std::size_t k = 0; k < width; ++k) {
+            packet.org_x[k] = rays.ox[first + k];
+            packet.org_y[k] = rays.oy[first + k];
+            packet.org_z[k] = rays.oz[first + k];
+            packet.dir_x[k] = rays.dx[first + k];
+            packet.dir_y[k] = rays.dy[first + k];
+            packet.dir_z[k] = rays.dz[first + k];
+            packet.tnear[k] = 0;
+            packet.tfar[k] = rays.reach[first + k];
+            packet.time[k] = 0;
+            packet.mask[k] = ~0U;
+            packet.id[k] = 0;
+            packet.flags[k] = 0;
+            valid[k] = first + k < n ? -1 : 0;
+        }
+        rtcOccluded8(valid.data(), impl_->scene, &context, &packet);
+        for (std::size_t k = 0; k < width && first + k < n; ++k)
+            blocked[first + k] = packet.tfar[k] < 0 ? 1 : 0;
+    }
+}
+
+}  // namespace patchlight
