@@ -5,8 +5,6 @@
 #include "meshing/patch_mesh.h"
 
 #include <cstdint>
-#include <functional>
-#include <stop_token>
 #include <vector>
 
 namespace patchlight {
@@ -29,7 +27,7 @@ struct FormFactorOptions {
     std::uint64_t seed = 1;
 };
 
-/// Fractions F_ij of the power leaving patch i that reach patches j, j ascending.
+/// Fractions F_ij of the power leaving patch i that reach patches j, in order of first hit.
 struct FormFactorRow {
     std::vector<PatchId> patches;
     std::vector<double> factors;
@@ -41,12 +39,18 @@ struct FormFactorRow {
 /// Rows of F, compressed. Not reciprocal: sampled rows only gather.
 struct FormFactorMatrix {
     std::vector<std::size_t> row_start;  ///< patches + 1
-    std::vector<std::uint32_t> columns;  ///< ascending in each row
+    std::vector<std::uint32_t> columns;  ///< of each row, in order of first hit
     std::vector<float> factors;
     PatchField<double> raw_sum, escaped, backs;
     std::size_t rays = 0;
 
     std::size_t size() const { return row_start.empty() ? 0 : row_start.size() - 1; }
 };
+
+class RowSampler;
+struct WorkMonitor;
+
+/// All rows, on all threads. Throws Interrupted.
+FormFactorMatrix assemble_rows(const RowSampler& sampler, std::size_t patches, const WorkMonitor& monitor);
 
 }  // namespace patchlight

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "formfactor/work_monitor.h"  // Interrupted
+
 #include <cstddef>
 #include <functional>
-#include <stdexcept>
 #include <string_view>
 
 namespace patchlight {
@@ -19,11 +20,5 @@ struct Progress {
 
 /// Called from one thread at a time, some times a second.
 using ProgressObserver = std::function<void(const Progress&)>;
-
-/// Thrown when the caller's stop token asks to stop: nothing of the running step is kept.
-class Interrupted : public std::runtime_error {
-public:
-    Interrupted() : std::runtime_error("interrupted") {}
-};
 
 }  // namespace patchlight

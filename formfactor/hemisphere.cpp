@@ -1,0 +1,102 @@
+#include "formfactor/hemisphere.h"
+
+#include "formfactor/random_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+namespace patchlight {
+
+namespace {
+
+void add(HemisphereSet& set, double sine, double cosine, double phi, double factor)
+{
+    set.x.push_back(static_cast<float>(sine * std::cos(phi)));
+    set.y.push_back(static_cast<float>(sine * std::sin(phi)));
+    set.z.push_back(static_cast<float>(cosine));
+    set.factor.push_back(static_cast<float>(factor));
+    set.sum += factor;
+}
+
+/// Origins: the R2 sequence, shifted at random, folded into the triangle, dealt to the directions at random.
+void add_origins(HemisphereSet& set, RandomNumbers& random)
+{
+    constexpr double g = 1.32471795724474602596;  // plastic number [Roberts18]
+    const std::size_t n = set.size();
+    const double shift0 = random.uniform(), shift1 = random.uniform();
+    std::vector<std::uint32_t> deal(n);
+    std::iota(deal.begin(), deal.end(), 0U);
+    for (std::size_t i = n; i > 1; --i) std::swap(deal[i - 1], deal[random.below(static_cast<std::uint32_t>(i))]);
+    set.b0.resize(n);
+    set.b1.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        double whole = 0;
+        double u = std::modf(shift0 + static_cast<double>(i) / g, &whole);
+        double v = std::modf(shift1 + static_cast<double>(i) / (g * g), &whole);
+        // Low-distortion map of the square to the triangle [Heitz19].
+        if (v > u) {
+            u *= 0.5;
+            v -= u;
+        } else {
+            v *= 0.5;
+            u -= v;
+        }
+        set.b0[deal[i]] = static_cast<float>(u);
+        set.b1[deal[i]] = static_cast<float>(v);
+    }
+}
+
+HemisphereSet stratified(int rays, RandomNumbers& random)
+{
+    const int rings = std::max(2, 2 * static_cast<int>(std::lround(std::sqrt(rays / 6.0) / 2)));
+    const int sectors = 4 * ((rays + 4 * rings - 1) / (4 * rings));
+    const double factor = 1.0 / (rings * sectors);
+    HemisphereSet set;
+    // Tiles of 2 rings × 4 sectors make packets of similar rays.
+    for (int ring = 0; ring < rings; ring += 2)
+        for (int sector = 0; sector < sectors; sector += 4)
+            for (int k = 0; k < 8; ++k) {
+                const double u = (ring + k / 4 + random.uniform()) / rings;
+                const double v = (sector + k % 4 + random.uniform()) / sectors;
+                add(set, std::sqrt(u), std::sqrt(1 - u), 2 * std::numbers::pi * v, factor);
+            }
+    return set;
+}
+
+}  // namespace
+
+HemisphereSet regular_grid(int k, bool exact_rings)
+{
+    if (k < 8 || k % 4 != 0) throw std::invalid_argument("a regular hemisphere grid needs k ≥ 8, a multiple of 4");
+    const double step = 2 * std::numbers::pi / k;
+    HemisphereSet set;
+    for (int m = exact_rings ? 0 : 1; m < k / 4; ++m) {
+        const double theta = exact_rings ? (m + 0.5) * step : m * step;
+        const double low = std::sin(m * step), high = std::sin((m + 1) * step);
+        const double factor = exact_rings ? (high * high - low * low) / k
+                                          : 2 * std::numbers::pi / (static_cast<double>(k) * k) * std::sin(2 * theta);
+        for (int l = 0; l < k; ++l) add(set, std::sin(theta), std::cos(theta), l * step, factor);
+    }
+    return set;
+}
+
+std::vector<HemisphereSet> hemisphere_sets(const FormFactorOptions& options, int count)
+{
+    std::vector<HemisphereSet> sets;
+    for (int i = 0; i < count; ++i) {
+        RandomNumbers random(options.seed, static_cast<std::uint64_t>(i));
+        if (options.directions == HemisphereDirections::stratified) {
+            sets.push_back(stratified(options.rays, random));
+        } else {
+            const int k = std::max(8, 4 * static_cast<int>(std::lround(std::sqrt(options.rays / 4.0))));
+            sets.push_back(regular_grid(k, options.directions == HemisphereDirections::regular_grid));
+        }
+        add_origins(sets.back(), random);
+    }
+    return sets;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "formfactor/form_factors.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace patchlight {
+
+/// Directions over the hemisphere about +z, each with the form factor ΔF that it stands for, and with each a
+/// stratified place on the unit right triangle (barycentric coordinates) to start from. Several independent sets
+/// are made at once; a patch picks one and turns it about its normal, so that no two patches share their error.
+struct HemisphereSet {
+    std::vector<float> x, y, z;      ///< unit directions, neighbours similar
+    std::vector<float> factor;       ///< ΔF of each
+    std::vector<float> b0, b1;       ///< barycentric coordinates of the origin
+    double sum = 0;                  ///< Σ ΔF: 1, but for the lecture's rule
+
+    std::size_t size() const { return x.size(); }
+};
+
+/// The sets of directions asked for. `options.rays` is rounded: stratified to rings × sectors, the grids to k·k/4
+/// with k a multiple of 4 (k = 45 gives 495 rays; the lecture's k = 64 gives 1,024).
+/// Stratified: r = √u, φ = 2πv, one (u, v) in each of rings × sectors equal strata: ΔF = 1/n.
+std::vector<HemisphereSet> hemisphere_sets(const FormFactorOptions& options, int count);
+
+/// The lecture's grid: φ = lΔφ, θ = (m + ½)Δθ, Δφ = Δθ = 2π/k; `exact_rings` weighs ring m with
+/// (sin²θ_{m+1} − sin²θ_m)/k, else with the lecture's (2π/k²) sin 2θ, which sums to Δθ·cot Δθ.
+/// Throws std::invalid_argument unless k ≥ 8 is a multiple of 4.
+HemisphereSet regular_grid(int k, bool exact_rings);
+
+}  // namespace patchlight

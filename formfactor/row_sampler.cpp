@@ -1,0 +1,219 @@
+#include "formfactor/row_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace patchlight {
+
+namespace {
+
+constexpr int set_count = 32;
+constexpr std::uint64_t shadow_stream = 0x5ad0ULL << 48;  // other random numbers than the directions'
+
+}  // namespace
+
+RowSampler::RowSampler(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const PatchLocator& locator,
+                       std::span<const SurfaceId> sources, const FormFactorOptions& options)
+    : scene_(scene), caster_(caster), mesh_(mesh), locator_(locator), options_(options),
+      sets_(hemisphere_sets(options, set_count))
+{
+    for (const SurfaceId s : sources) sources_.emplace_back(scene, s);
+}
+
+/// Turns the set's directions about the frame's normal and writes them as rays; the origins come after.
+void RowSampler::aim(const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays) const
+{
+    const Vec3 u = std::cos(turn) * frame.u + std::sin(turn) * frame.v, v = glm::cross(frame.n, u);
+    const auto f = [](double x) { return static_cast<float>(x); };
+    const float ux = f(u.x), uy = f(u.y), uz = f(u.z), vx = f(v.x), vy = f(v.y), vz = f(v.z);
+    const float nx = f(frame.n.x), ny = f(frame.n.y), nz = f(frame.n.z);
+    rays.resize(set.size());
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        const float x = set.x[i], y = set.y[i], z = set.z[i];
+        rays.dx[i] = x * ux + y * vx + z * nx;
+        rays.dy[i] = x * uy + y * vy + z * ny;
+        rays.dz[i] = x * uz + y * vz + z * nz;
+        rays.reach[i] = std::numeric_limits<float>::infinity();
+    }
+}
+
+void RowSampler::patch_row(PatchId patch, RowScratch& scratch) const
+{
+    const SurfaceId surface = mesh_.surface(patch);
+    const PlaneFrame& frame = scene_.surface(surface).frame;
+    RandomNumbers random(options_.seed, patch.value);
+    const HemisphereSet& set = sets_[random.below(set_count)];
+    aim(set, frame, 2 * std::numbers::pi * random.uniform(), scratch.rays);
+
+    const auto c = mesh_.corners(patch);
+    const Vec3 corner = mesh_.position(c[2]), edge0 = mesh_.position(c[0]) - corner, edge1 = mesh_.position(c[1]) - corner;
+    const Vec3 start = caster_.leave(corner, frame.n);
+    const auto f = [](double x) { return static_cast<float>(x); };
+    const float sx = f(start.x), sy = f(start.y), sz = f(start.z);
+    const float ax = f(edge0.x), ay = f(edge0.y), az = f(edge0.z), bx = f(edge1.x), by = f(edge1.y), bz = f(edge1.z);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        const float s = set.b0[i], t = set.b1[i];
+        scratch.rays.ox[i] = sx + s * ax + t * bx;
+        scratch.rays.oy[i] = sy + s * ay + t * by;
+        scratch.rays.oz[i] = sz + s * az + t * bz;
+    }
+    accumulate(set, scratch);
+
+    scratch.receivers.clear();
+    const std::size_t origins = std::min<std::size_t>(set.size(), 4);
+    for (std::size_t k = 0; k < origins; ++k) {
+        const std::size_t i = k * set.size() / origins;
+        scratch.receivers.push_back({point_of(patch, set.b0[i], set.b1[i]), frame.n});
+    }
+    swap_small_sources(surface, patch.value, scratch);
+    collect(scratch);
+}
+
+Vec3 RowSampler::point_of(PatchId patch, float b0, float b1) const
+{
+    const auto c = mesh_.corners(patch);
+    const double s = static_cast<double>(b0), t = static_cast<double>(b1);
+    return s * mesh_.position(c[0]) + t * mesh_.position(c[1]) + (1 - s - t) * mesh_.position(c[2]);
+}
+
+std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column, const WorkMonitor& monitor) const
+{
+    RowScratch own;
+    patch_row(shooter, own);
+    PatchField<double> row(mesh_.patch_count(), 0.0);
+    for (std::size_t k = 0; k < own.row.patches.size(); ++k) row[own.row.patches[k]] = own.row.factors[k];
+
+    const SurfaceId surface = mesh_.surface(shooter);
+    const auto c = mesh_.corners(shooter);
+    const Source source(surface, scene_.surface(surface).frame.n, mesh_.position(c[0]), mesh_.position(c[1]),
+                        mesh_.position(c[2]));
+    const HemisphereSet& origins = sets_.front();
+    const std::size_t traced = for_each_row<RowScratch>(mesh_.patch_count(), monitor, [&](std::size_t j, RowScratch& scratch) {
+        const PatchId receiver(j);
+        column[j] = 0;
+        if (mesh_.surface(receiver) == surface) return;
+        const Vec3 n = scene_.surface(mesh_.surface(receiver)).frame.n;
+        scratch.receivers.clear();
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::size_t i = k * origins.size() / 4;
+            scratch.receivers.push_back({point_of(receiver, origins.b0[i], origins.b1[i]), n});
+        }
+        const double unoccluded = source.unoccluded(mesh_.centroid(receiver), n);
+        if (unoccluded >= options_.small_source) {
+            column[j] = row[receiver] * mesh_.area(shooter) / mesh_.area(receiver);
+            return;
+        }
+        RandomNumbers random(options_.seed, shadow_stream ^ (static_cast<std::uint64_t>(shooter.value) << 32) ^ j);
+        column[j] = visible_factor(caster_, source, scratch.receivers, options_.shadow_rays, random, scratch.shadow);
+        scratch.traced += scratch.shadow.blocked.size();
+    });
+    return traced + own.traced;
+}
+
+void RowSampler::point_row(const Vec3& position, SurfaceId surface, std::uint64_t direction_key, std::uint64_t jitter_key,
+                           RowScratch& scratch) const
+{
+    const PlaneFrame& frame = scene_.surface(surface).frame;
+    RandomNumbers random(options_.seed, ~direction_key);
+    const HemisphereSet& set = sets_[random.below(set_count)];
+    aim(set, frame, 2 * std::numbers::pi * random.uniform(), scratch.rays);
+    const Vec3 start = caster_.leave(position, frame.n);
+    std::fill_n(scratch.rays.ox.begin(), set.size(), static_cast<float>(start.x));
+    std::fill_n(scratch.rays.oy.begin(), set.size(), static_cast<float>(start.y));
+    std::fill_n(scratch.rays.oz.begin(), set.size(), static_cast<float>(start.z));
+    accumulate(set, scratch);
+    scratch.receivers.assign(1, {position, frame.n});
+    swap_small_sources(surface, jitter_key, scratch);
+    collect(scratch);
+}
+
+void RowSampler::accumulate(const HemisphereSet& set, RowScratch& scratch) const
+{
+    caster_.closest(scratch.rays, scratch.hits);
+    scratch.traced += set.size();
+    if (scratch.weight.size() < mesh_.patch_count()) scratch.weight.resize(mesh_.patch_count(), 0.0F);
+    scratch.touched.clear();
+    double escaped = 0, backs = 0;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        const std::uint32_t surface = scratch.hits.surface[i];
+        if (surface >= HitBatch::black_back) {
+            (surface == HitBatch::escaped ? escaped : backs) += static_cast<double>(set.factor[i]);
+            continue;
+        }
+        const PatchId patch = locator_.locate(SurfaceId(surface), scratch.hits.x[i], scratch.hits.y[i]);
+        float& weight = scratch.weight[patch.value];
+        if (weight == 0) scratch.touched.push_back(patch.value);
+        weight += set.factor[i];
+    }
+    scratch.row.escaped = escaped;
+    scratch.row.backs = backs;
+    scratch.row.raw_sum = 0;
+    for (const std::uint32_t patch : scratch.touched) scratch.row.raw_sum += static_cast<double>(scratch.weight[patch]);
+}
+
+void RowSampler::swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch& scratch) const
+{
+    scratch.small.clear();
+    double unoccluded = 0;
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+        if (sources_[s].surface() == own) continue;
+        double factor = 0;
+        for (const ReceiverPoint& r : scratch.receivers) factor += sources_[s].unoccluded(r.position, r.normal);
+        factor /= static_cast<double>(scratch.receivers.size());
+        if (!(factor > 0) || factor >= options_.small_source) continue;
+        scratch.small.emplace_back(s, factor);
+        unoccluded += factor;
+    }
+    const double row_sum = scratch.row.raw_sum;
+    // Judged on unoccluded factors: these don't depend on chance, so that neighbouring points decide alike.
+    if (scratch.small.empty() || unoccluded >= 0.5 * row_sum) return;
+
+    double hits = 0;
+    scratch.is_swapped.resize(scene_.surfaces.size(), 0);
+    for (const auto& [s, factor] : scratch.small) {
+        scratch.is_swapped[sources_[s].surface().value] = 1;
+        for (const PatchId p : mesh_.patches_of(sources_[s].surface())) {
+            hits += static_cast<double>(scratch.weight[p.value]);
+            scratch.weight[p.value] = 0;
+        }
+    }
+    const std::size_t others = scratch.touched.size();
+    RandomNumbers random(options_.seed, shadow_stream ^ key);
+    double swapped = 0;
+    for (const auto& [s, factor] : scratch.small) {
+        swapped += visible_factor(caster_, sources_[s], scratch.receivers, options_.shadow_rays, random, scratch.shadow);
+        scratch.traced += scratch.shadow.blocked.size();
+        const SurfaceId surface = sources_[s].surface();
+        const PlaneFrame& frame = scene_.surface(surface).frame;
+        for (const VisibleSample& sample : scratch.shadow.visible) {
+            const Vec2 q = frame.to_plane(sample.point);
+            const PatchId p = locator_.locate(surface, static_cast<float>(q.x), static_cast<float>(q.y));
+            scratch.touched.push_back(p.value);
+            scratch.weight[p.value] += static_cast<float>(sample.weight);
+        }
+    }
+    const double rest = row_sum - hits;
+    const float keep = rest > 0 ? static_cast<float>(std::max(0.0, row_sum - swapped) / rest) : 1.0F;
+    for (std::size_t i = 0; i < others; ++i) {
+        const std::uint32_t p = scratch.touched[i];
+        if (scratch.is_swapped[mesh_.surface(PatchId(p)).value] == 0) scratch.weight[p] *= keep;
+    }
+    for (const auto& [s, factor] : scratch.small) scratch.is_swapped[sources_[s].surface().value] = 0;
+}
+
+void RowSampler::collect(RowScratch& scratch) const
+{
+    scratch.row.patches.clear();
+    scratch.row.factors.clear();
+    for (const std::uint32_t p : scratch.touched) {
+        // A patch may have been touched twice: by hits and as part of a swapped source.
+        if (scratch.weight[p] == 0) continue;
+        scratch.row.patches.emplace_back(p);
+        scratch.row.factors.push_back(static_cast<double>(scratch.weight[p]));
+        scratch.weight[p] = 0;
+    }
+}
+
+}  // namespace patchlight

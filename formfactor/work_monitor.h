@@ -1,0 +1,56 @@
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <stdexcept>
+#include <stop_token>
+
+namespace patchlight {
+
+/// Thrown when the caller's stop token asks to stop: nothing of the running step is kept.
+class Interrupted : public std::runtime_error {
+public:
+    Interrupted() : std::runtime_error("interrupted") {}
+};
+
+/// Who watches a long loop, and who may stop it.
+struct WorkMonitor {
+    std::stop_token stop;
+    /// Called from one thread at a time with the share that is done.
+    std::function<void(double fraction)> tell;
+};
+
+/// Calls work(i, scratch) for every i in [0, n) on all threads, with one Scratch a thread, in blocks of 32.
+/// Whatever work(i) writes must depend on i alone: then the result doesn't depend on the number of threads.
+/// Returns the scratches' sum of `traced`. Throws Interrupted within a block's time of a stop request.
+template <class Scratch, class Work>
+std::size_t for_each_row(std::size_t n, const WorkMonitor& monitor, const Work& work)
+{
+    constexpr std::size_t block = 32;
+    const std::size_t blocks = (n + block - 1) / block;
+    tbb::enumerable_thread_specific<Scratch> scratches;
+    std::atomic<std::size_t> done{0};
+    std::mutex telling;
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+        if (monitor.stop.stop_requested()) return;
+        Scratch& scratch = scratches.local();
+        for (std::size_t i = b * block; i < std::min(n, (b + 1) * block); ++i) work(i, scratch);
+        const std::size_t now = ++done;
+        if (!monitor.tell) return;
+        if (const std::unique_lock lock(telling, std::try_to_lock); lock.owns_lock())
+            monitor.tell(static_cast<double>(now) / static_cast<double>(blocks));
+    });
+    if (monitor.stop.stop_requested()) throw Interrupted();
+    std::size_t traced = 0;
+    for (const Scratch& scratch : scratches) traced += scratch.traced;
+    return traced;
+}
+
+}  // namespace patchlight
