@@ -87,8 +87,8 @@ std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column
 
     const SurfaceId surface = mesh_.surface(shooter);
     const auto c = mesh_.corners(shooter);
-    const Source source(surface, scene_.surface(surface).frame.n, mesh_.position(c[0]), mesh_.position(c[1]),
-                        mesh_.position(c[2]));
+    const std::array<std::array<Vec3, 3>, 1> triangle{{{mesh_.position(c[0]), mesh_.position(c[1]), mesh_.position(c[2])}}};
+    const Source source(surface, scene_.surface(surface).frame.n, triangle);
     const HemisphereSet& origins = sets_.front();
     const std::size_t traced = for_each_row<RowScratch>(mesh_.patch_count(), monitor, [&](std::size_t j, RowScratch& scratch) {
         const PatchId receiver(j);

@@ -45,9 +45,10 @@ Source::Source(const Scene& scene, SurfaceId surface) : surface_(surface), norma
     divide();
 }
 
-Source::Source(SurfaceId surface, const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c)
-    : surface_(surface), normal_(normal), pieces_{{a, b, c}}
+Source::Source(SurfaceId surface, const Vec3& normal, std::span<const std::array<Vec3, 3>> triangles)
+    : surface_(surface), normal_(normal)
 {
+    for (const auto& t : triangles) pieces_.push_back({t[0], t[1], t[2]});
     divide();
 }
 

@@ -3,6 +3,7 @@
 #include "formfactor/random_numbers.h"
 #include "formfactor/ray_caster.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,8 +15,8 @@ namespace patchlight {
 class Source {
 public:
     Source(const Scene& scene, SurfaceId surface);
-    /// A single triangle of a surface (a patch), counter-clockwise seen from its front.
-    Source(SurfaceId surface, const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c);
+    /// Part of a surface: triangles (patches), counter-clockwise seen from its front.
+    Source(SurfaceId surface, const Vec3& normal, std::span<const std::array<Vec3, 3>> triangles);
 
     SurfaceId surface() const { return surface_; }
     const Vec3& normal() const { return normal_; }

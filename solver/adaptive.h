@@ -20,23 +20,15 @@ enum class Refine { none, intensity };
 struct AdaptiveOptions {
     MeshingOptions meshing;         ///< of the first, uniform mesh (with Refine::none: the only one)
     FormFactorOptions form_factors;
-    SolveOptions rough{.solver = Solver::progressive, .tolerance = 0.05};
-    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};
+    SolveOptions rough{.solver = Solver::progressive, .tolerance = 0.1, .max_sweeps = 1, .ambient = true};
+    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};  ///< from the second cycle on
     GatherOptions gather;
     EstimateOptions estimate;
     MarkOptions mark;
     Refine refine = Refine::intensity;
-    int iterations = 12;              ///< adaptive cycles at most, ≥ 1
-    double target_error = 0;         ///< stop when the estimated error is below; 0 = go on to the budget
+    int iterations = 16;              ///< refinements at most, ≥ 1
+    double target_error = 0;          ///< stop when the estimated error is below; 0 = go on to the budget
     std::size_t max_elements = 8000;  ///< budget of patches
-};
-
-/// Where the light went, W, three bands together. emitted = absorbed + escaped, but for the error.
-struct EnergyBalance {
-    double emitted = 0;   ///< Σ A E
-    double absorbed = 0;  ///< Σ A (1 − ρ) H, and what met black backs
-    double escaped = 0;   ///< what met nothing
-    double relative_residual = 0;  ///< (emitted − absorbed − escaped) / emitted; raw, nothing is normalised
 };
 
 /// Wall seconds of one cycle, for timing.json only.

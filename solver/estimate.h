@@ -1,9 +1,7 @@
 #pragma once
 
-#include "meshing/fields.h"
 #include "meshing/refinement.h"
-
-#include <string_view>
+#include "solver/gather.h"
 
 namespace patchlight {
 
@@ -14,23 +12,39 @@ enum class Indicator {
 
 struct EstimateOptions {
     Indicator indicator = Indicator::residual;
+    int rays = 128;  ///< over the hemisphere at each extra point, 16 … 65536
 };
 
-/// Per patch, ≥ 0. It is an indicator, not a bound.
+/// Per patch, ≥ 0. It is an indicator, not a bound: it sees what the mesh can't follow, not what the rays missed.
 struct ErrorEstimate {
     PatchField<double> eta;  ///< √∫|B̃ − B|² dA over the patch, W/m²·m, three bands together
     double total = 0;        ///< √Σ η²
     double relative = 0;     ///< total / √∫|B − E|² dA over all reflecting surface; 0/0 = 0
+    std::size_t rays = 0;    ///< what it took
 };
 
+/// √∫|B − E|² dA of the linear reconstruction over all reflecting surface, W/m²·m.
+double reflected_norm(const Scene& scene, const PatchMesh& mesh, const VertexRadiosity& B);
+
+/// Residual: light is gathered at corners, edge midpoints and centroid of each patch with the same directions; what
+/// differs there from linear interpolation is integrated with Radau's rule of degree 3 (2/15 for each midpoint,
+/// 9/20 for the centroid, times the area). Vertex difference: |B_max − B_min| over the corners × √A.
+/// Patches that reflect nothing have 0. Throws Interrupted.
+ErrorEstimate estimate(const Exchange& exchange, const Radiosity& B, const VertexRadiosity& vertex_B,
+                       const EstimateOptions& options, const GatherOptions& gather, const WorkMonitor& monitor = {});
+
 enum class Marking {
-    doerfler,        ///< the fewest patches that hold a share of Σ η²
+    doerfler,       ///< the fewest patches that hold a share of Σ η²
     fixed_fraction  ///< the worst share of the patches
 };
 
 struct MarkOptions {
     Marking marking = Marking::doerfler;
-    double share = 0.7;  ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
+    double share = 0.7;      ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
+    double smallest = 1e-4;  ///< patches whose longest edge is below this × diameter are left alone
 };
+
+/// The patches to split next, the worst first: their longest edges are to be halved. Touches nothing.
+RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error, const MarkOptions& options);
 
 }  // namespace patchlight

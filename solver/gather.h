@@ -1,16 +1,58 @@
 #pragma once
 
+#include "solver/system.h"
+
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace patchlight {
 
-/// How light is gathered at points: emitters by Lambert's formula times the visible fraction, the rest by rays
-/// over the hemisphere that bring B of the patches they meet.
+/// How light is gathered at points: small emitters by Lambert's formula times the visible fraction, the rest by
+/// rays over the hemisphere that bring B of the patches they meet.
 struct GatherOptions {
-    int rays = 256;              ///< over the hemisphere, 16 … 65536
-    int shadow_rays = 256;       ///< per emitter, where it is partly hidden, 16 … 65536
-    double crease_angle = 30;    ///< degrees: facets of one material that meet at less share irradiance at common vertices
+    int rays = 512;            ///< over the hemisphere, 16 … 65536
+    int shadow_rays = 1024;    ///< per emitter, where it is partly hidden, 16 … 65536
+    double small_source = 0.2;  ///< as in FormFactorOptions
+    double crease_angle = 30;  ///< degrees: facets of one material that meet at less share irradiance at common vertices
     std::uint64_t seed = 1;
 };
+
+/// A place on a surface.
+struct SurfacePoint {
+    Vec3 position{0.0};
+    SurfaceId surface;
+};
+
+/// H in W/m² at points, and the rays it took.
+struct GatheredLight {
+    std::vector<Rgb> irradiance;
+    std::size_t rays = 0;
+};
+
+/// Irradiance at points from the patch solution B: one more bounce. Points of one surface share their directions,
+/// so that what the rays don't resolve varies smoothly over it. Throws Interrupted.
+GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
+                                const GatherOptions& options, const WorkMonitor& monitor = {});
+
+/// A point moved off every edge toward `inside`, by a thousandth of the way or what single precision needs.
+Vec3 moved_inside(const Vec3& point, const Vec3& inside, double diameter);
+
+/// Where light is gathered for each vertex: moved into its surface.
+std::vector<SurfacePoint> vertex_points(const Exchange& exchange);
+
+/// Linear elements: B = E + ρ H gathered at every vertex, never averaged from neighbours, never across a surface's
+/// border; except that facets of a curved object share their irradiance at common vertices, within one material
+/// and the crease angle. Throws Interrupted.
+struct Reconstruction {
+    VertexRadiosity B;
+    std::size_t rays = 0;
+};
+Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
+                           const WorkMonitor& monitor = {});
+
+/// Averages irradiance over vertices at one place whose surfaces have one material and normals within the crease
+/// angle of the vertex's own.
+void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance);
 
 }  // namespace patchlight

@@ -1,16 +1,49 @@
 #pragma once
 
-#include "formfactor/form_factors.h"
+#include "formfactor/row_sampler.h"
 #include "solver/radiosity.h"
 
+#include <memory>
+
 namespace patchlight {
+
+/// What light is exchanged over: the scene, its visibility, and the patch mesh of one cycle. References must outlive it.
+struct Exchange {
+    const Scene& scene;
+    const RayCaster& caster;
+    const PatchMesh& mesh;
+    const PatchLocator& locator;
+};
 
 /// (I − diag(ρ)F) B = E on a patch mesh: row i gathers, B_i = E_i + ρ_i Σ_j F_ij B_j. Three bands at once.
 struct RadiositySystem {
     PatchField<double> area;  ///< m²
     PatchField<Rgb> E;        ///< W/m²
     PatchField<Rgb> rho;
-    FormFactorMatrix F;
+    FormFactorMatrix F;       ///< empty when rows are only computed on demand
 };
+
+/// The surfaces that emit.
+std::vector<SurfaceId> emitters(const Scene& scene);
+
+/// B = E.
+Radiosity emittance(const Scene& scene, const PatchMesh& mesh);
+
+/// Areas, E and ρ of every patch; no form factors yet.
+RadiositySystem unassembled(const Scene& scene, const PatchMesh& mesh);
+
+/// The whole system with its sampled rows. Throws Interrupted.
+RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor = {});
+
+/// Where the light went, W, three bands together. emitted = absorbed + escaped, but for the error.
+struct EnergyBalance {
+    double emitted = 0;   ///< Σ A E
+    double absorbed = 0;  ///< Σ A (1 − ρ) H, and what met black backs
+    double escaped = 0;   ///< what met nothing
+    double relative_residual = 0;  ///< (emitted − absorbed − escaped) / emitted; raw, nothing is normalised
+};
+
+/// From the gathered irradiance H = F B and the rows' own escape; needs an assembled system.
+EnergyBalance energy_balance(const RadiositySystem& system, const Radiosity& B);
 
 }  // namespace patchlight

@@ -1,0 +1,141 @@
+#include "solver/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace patchlight {
+
+namespace {
+
+double square(const Rgb& x) { return glm::dot(x, x); }
+
+/// Corners first (by vertex id), then edge midpoints, then centroids.
+struct ExtraPoints {
+    std::vector<SurfacePoint> points;
+    std::vector<std::array<std::uint32_t, 3>> midpoint_of;  // of each patch's edge k
+    std::uint32_t first_centroid = 0;
+};
+
+ExtraPoints extra_points(const Exchange& exchange)
+{
+    const PatchMesh& mesh = exchange.mesh;
+    ExtraPoints extra;
+    extra.points = vertex_points(exchange);
+    extra.midpoint_of.resize(mesh.patch_count());
+    for (const PatchId p : mesh.patches()) {
+        const auto c = mesh.corners(p);
+        const auto across = mesh.neighbours(p);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (across[k].valid() && across[k] < p) {
+                const auto back = mesh.neighbours(across[k]);
+                const auto at = static_cast<std::size_t>(std::find(back.begin(), back.end(), p) - back.begin());
+                extra.midpoint_of[p.value][k] = extra.midpoint_of[across[k].value][at];
+                continue;
+            }
+            Vec3 middle = 0.5 * (mesh.position(c[k]) + mesh.position(c[(k + 1) % 3]));
+            if (!across[k].valid()) middle = moved_inside(middle, mesh.centroid(p), exchange.scene.diameter);
+            extra.midpoint_of[p.value][k] = static_cast<std::uint32_t>(extra.points.size());
+            extra.points.push_back({middle, mesh.surface(p)});
+        }
+    }
+    extra.first_centroid = static_cast<std::uint32_t>(extra.points.size());
+    for (const PatchId p : mesh.patches()) extra.points.push_back({mesh.centroid(p), mesh.surface(p)});
+    return extra;
+}
+
+PatchField<double> residual(const Exchange& exchange, const Radiosity& B, const EstimateOptions& options,
+                            GatherOptions gather, const WorkMonitor& monitor, std::size_t& rays)
+{
+    gather.rays = options.rays;
+    const ExtraPoints extra = extra_points(exchange);
+    GatheredLight light = gather_irradiance(exchange, B, extra.points, gather, monitor);
+    share_irradiance(exchange, gather.crease_angle, light.irradiance);
+    rays = light.rays;
+    const auto& H = light.irradiance;
+    PatchField<double> eta(exchange.mesh.patch_count(), 0.0);
+    for (const PatchId p : exchange.mesh.patches()) {
+        const Rgb rho = exchange.scene.material_of(exchange.mesh.surface(p)).reflectance;
+        const auto c = exchange.mesh.corners(p);
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += 2.0 / 15 * square(rho * (H[extra.midpoint_of[p.value][k]]
+                                            - 0.5 * (H[c[k].value] + H[c[(k + 1) % 3].value])));
+        sum += 9.0 / 20 * square(rho * (H[extra.first_centroid + p.value]
+                                        - (H[c[0].value] + H[c[1].value] + H[c[2].value]) / 3.0));
+        eta[p] = std::sqrt(exchange.mesh.area(p) * sum);
+    }
+    return eta;
+}
+
+PatchField<double> vertex_difference(const Exchange& exchange, const VertexRadiosity& B)
+{
+    PatchField<double> eta(exchange.mesh.patch_count(), 0.0);
+    for (const PatchId p : exchange.mesh.patches()) {
+        if (!exchange.scene.material_of(exchange.mesh.surface(p)).reflects()) continue;
+        const auto c = exchange.mesh.corners(p);
+        const Rgb low = glm::min(B[c[0]], glm::min(B[c[1]], B[c[2]]));
+        const Rgb high = glm::max(B[c[0]], glm::max(B[c[1]], B[c[2]]));
+        eta[p] = std::sqrt(exchange.mesh.area(p) * square(high - low));
+    }
+    return eta;
+}
+
+}  // namespace
+
+double reflected_norm(const Scene& scene, const PatchMesh& mesh, const VertexRadiosity& B)
+{
+    double sum = 0;
+    for (const PatchId p : mesh.patches()) {
+        const Material& material = scene.material_of(mesh.surface(p));
+        if (!material.reflects()) continue;
+        const auto c = mesh.corners(p);
+        const Rgb x = B[c[0]] - material.emission, y = B[c[1]] - material.emission, z = B[c[2]] - material.emission;
+        sum += mesh.area(p) / 12 * (square(x) + square(y) + square(z) + square(x + y + z));
+    }
+    return std::sqrt(sum);
+}
+
+ErrorEstimate estimate(const Exchange& exchange, const Radiosity& B, const VertexRadiosity& vertex_B,
+                       const EstimateOptions& options, const GatherOptions& gather, const WorkMonitor& monitor)
+{
+    ErrorEstimate error;
+    error.eta = options.indicator == Indicator::residual
+        ? residual(exchange, B, options, gather, monitor, error.rays)
+        : vertex_difference(exchange, vertex_B);
+    double sum = 0;
+    for (const double eta : error.eta.values()) sum += eta * eta;
+    error.total = std::sqrt(sum);
+    const double norm = reflected_norm(exchange.scene, exchange.mesh, vertex_B);
+    error.relative = error.total == 0 ? 0 : error.total / norm;
+    return error;
+}
+
+RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error, const MarkOptions& options)
+{
+    std::vector<std::uint32_t> order;
+    double all = 0;
+    for (const PatchId p : mesh.patches()) {
+        if (!(error.eta[p] > 0)) continue;
+        all += error.eta[p] * error.eta[p];
+        if (mesh.longest_edge(p) > options.smallest * scene.diameter) order.push_back(p.value);
+    }
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const double x = error.eta[PatchId(a)], y = error.eta[PatchId(b)];
+        return x != y ? x > y : a < b;
+    });
+    RefinementPlan plan;
+    double held = 0;
+    for (const std::uint32_t i : order) {
+        const bool enough = options.marking == Marking::doerfler
+            ? held >= options.share * all
+            : static_cast<double>(plan.splits.size()) >= options.share * static_cast<double>(mesh.patch_count());
+        if (enough) break;
+        const PatchId p(i);
+        plan.splits.push_back({p, 0.5 * mesh.longest_edge(p)});
+        held += error.eta[p] * error.eta[p];
+    }
+    return plan;
+}
+
+}  // namespace patchlight

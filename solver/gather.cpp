@@ -1,0 +1,100 @@
+#include "solver/gather.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace patchlight {
+
+GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
+                                const GatherOptions& options, const WorkMonitor& monitor)
+{
+    const FormFactorOptions sampling{.rays = options.rays, .shadow_rays = options.shadow_rays,
+                                     .small_source = options.small_source, .seed = options.seed};
+    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator,
+                             emitters(exchange.scene), sampling);
+    GatheredLight result;
+    result.irradiance.assign(points.size(), Rgb(0.0));
+    result.rays = for_each_row<RowScratch>(points.size(), monitor, [&](std::size_t i, RowScratch& scratch) {
+        const SurfacePoint& point = points[i];
+        if (!exchange.scene.material_of(point.surface).reflects()) return;
+        sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
+        Rgb H(0.0);
+        for (std::size_t k = 0; k < scratch.row.patches.size(); ++k) H += scratch.row.factors[k] * B[scratch.row.patches[k]];
+        result.irradiance[i] = H;
+    });
+    return result;
+}
+
+Vec3 moved_inside(const Vec3& point, const Vec3& inside, double diameter)
+{
+    const Vec3 way = inside - point;
+    const double length = glm::length(way);
+    if (length == 0) return point;
+    // Ten times the distance at which a ray leaves its surface, but never past the middle.
+    return point + std::min(0.5, std::max(1e-3, 1e-5 * diameter / length)) * way;
+}
+
+std::vector<SurfacePoint> vertex_points(const Exchange& exchange)
+{
+    const PatchMesh& mesh = exchange.mesh;
+    std::vector<SurfacePoint> points;
+    points.reserve(mesh.vertex_count());
+    for (const VertexId v : mesh.vertices()) {
+        Vec3 place = mesh.position(v);
+        if (mesh.on_border(v)) {
+            Vec3 inside(0.0);
+            const auto around = mesh.patches_around(v);
+            for (const PatchId p : around) inside += mesh.centroid(p) / static_cast<double>(around.size());
+            place = moved_inside(place, inside, exchange.scene.diameter);
+        }
+        points.push_back({place, mesh.surface(v)});
+    }
+    return points;
+}
+
+void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance)
+{
+    const PatchMesh& mesh = exchange.mesh;
+    const Scene& scene = exchange.scene;
+    // Corners of the input are welded: vertices at one place have the same bits.
+    std::map<std::tuple<double, double, double, std::uint32_t>, std::vector<VertexId>> places;
+    for (const VertexId v : mesh.vertices()) {
+        if (!mesh.on_border(v)) continue;
+        const Vec3& p = mesh.position(v);
+        places[{p.x, p.y, p.z, scene.surface(mesh.surface(v)).material.value}].push_back(v);
+    }
+    const double cosine = std::cos(crease_angle * std::numbers::pi / 180);
+    for (const auto& [place, group] : places) {
+        if (group.size() < 2) continue;
+        std::vector<Rgb> shared;
+        for (const VertexId v : group) {
+            Rgb sum(0.0);
+            double count = 0;
+            for (const VertexId w : group)
+                if (glm::dot(scene.surface(mesh.surface(v)).frame.n, scene.surface(mesh.surface(w)).frame.n) >= cosine) {
+                    sum += irradiance[w.value];
+                    ++count;
+                }
+            shared.push_back(count > 0 ? sum / count : irradiance[v.value]);
+        }
+        for (std::size_t k = 0; k < group.size(); ++k) irradiance[group[k].value] = shared[k];
+    }
+}
+
+Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
+                           const WorkMonitor& monitor)
+{
+    GatheredLight gathered = gather_irradiance(exchange, B, vertex_points(exchange), options, monitor);
+    share_irradiance(exchange, options.crease_angle, gathered.irradiance);
+    Reconstruction result{VertexRadiosity(exchange.mesh.vertex_count()), gathered.rays};
+    for (const VertexId v : exchange.mesh.vertices()) {
+        const Material& material = exchange.scene.material_of(exchange.mesh.surface(v));
+        result.B[v] = material.emission + material.reflectance * gathered.irradiance[v.value];
+    }
+    return result;
+}
+
+}  // namespace patchlight
