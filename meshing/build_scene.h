@@ -1,0 +1,11 @@
+#pragma once
+
+#include "meshing/raw_scene.h"
+
+namespace patchlight {
+
+/// Makes the scene of what a reader brought and validate() let pass: welded, split where faces touch, joined
+/// into surfaces. Throws SceneError ("zeroarea", "dark").
+LoadedScene build_scene(const RawScene& raw, const SceneOptions& options);
+
+}  // namespace patchlight
