@@ -70,7 +70,7 @@ def vase(scene, name, material, x, y, z):
 def pedestal(scene, number, x, y):
     height = 0.9 + 0.1 * (number % 3)
     scene.box(f"pedestal_{number}", "plaster", (x - 0.25, y - 0.25, 0), (x + 0.25, y + 0.25, height), skip=("-z",))
-    vase(scene, f"vase_{number}", list(COLOURS)[number % 4], x, y, height)
+    vase(scene, f"vase_{number}", list(COLOURS)[(number + number // 4) % 4], x, y, height)
 
 
 def picture(scene, name, corner, along, normal, width, height):
@@ -86,7 +86,7 @@ def picture(scene, name, corner, along, normal, width, height):
     assert sum(a * b for a, b in zip(newell(front), normal)) > 0
     scene.ring(name, "frame", back, front)
     scene.ring(name, "frame", front, canvas)
-    scene.face(name, list(COLOURS)[number(name) % 4], canvas)
+    scene.face(name, list(COLOURS)[(number(name) + number(name) // 4) % 4], canvas)
 
 
 def lamp(scene, number, x, y):
@@ -140,5 +140,5 @@ if __name__ == "__main__":
     assert not hall.open_edges(walls) and abs(hall.volume(walls) + room) < 1e-9 * room, "closed, fronts inside"
     hall.write_obj(options.stem)
     length = options.bays * BAY
-    write_view(options.stem, "inside", (0.7, 6.2, 1.9), (length * 0.55, 8.0, 1.6), (0, 0, 1), 58)
+    write_view(options.stem, "inside", (0.6, 13.2, 2.3), (length * 0.5, 5.2, 1.5), (0, 0, 1), 60)
     print(f"{len(hall.faces)} polygons")
