@@ -34,33 +34,35 @@ struct Tracer {
     const ReferenceScene& scene;
     const PathOptions& options;
     std::vector<std::size_t> emitters;
-    std::vector<double> cumulative;  ///< share of the emitted power up to each emitter
 
     Tracer(const ReferenceScene& s, const PathOptions& o) : scene(s), options(o)
     {
-        double power = 0;
-        for (std::size_t i = 0; i < scene.polygons().size(); ++i) {
-            const Polygon& polygon = scene.polygons()[i];
-            if (!polygon.emits()) continue;
-            emitters.push_back(i);
-            power += polygon.area * (polygon.radiance.r + polygon.radiance.g + polygon.radiance.b);
-            cumulative.push_back(power);
-        }
-        for (double& share : cumulative) share /= power;
+        for (std::size_t i = 0; i < scene.polygons().size(); ++i)
+            if (scene.polygons()[i].emits()) emitters.push_back(i);
     }
 
-    /// The emitter's irradiance of (p, n) by the point (a, b) of its bounding rectangle, times that rectangle's
-    /// area: points outside the polygon count as dark, which keeps the estimate unbiased for every shape.
-    Rgb from_emitter(const Polygon& emitter, const Vec3& p, const Vec3& n, double a, double b) const
+    /// A point of an emitter's bounding rectangle as seen from (p, n).
+    struct Sight {
+        double cosines_over_r2 = 0;  ///< cos · cos / r²; 0 when it isn't seen, or isn't in the polygon
+        double per_solid_angle = 0;  ///< density over solid angle of points that are uniform in the rectangle
+        double cosine = 0;           ///< at p
+    };
+    Sight sight(const Polygon& emitter, const Vec3& p, const Vec3& n, double a, double b) const
+    {
+        const Vec2 q = emitter.low + Vec2{a, b} * (emitter.high - emitter.low);
+        const Vec3 at = emitter.at(q);
+        const double r = glm::length(at - p);
+        const Vec3 way = (at - p) / r;
+        const double here = glm::dot(n, way);
+        const double there = -glm::dot(emitter.n, way);
+        if (here <= 0 || there <= 0 || !emitter.contains(q) || !scene.sees(p, at)) return {};
+        return {here * there / (r * r), r * r / (there * rectangle(emitter)), here};
+    }
+
+    static double rectangle(const Polygon& emitter)
     {
         const Vec2 extent = emitter.high - emitter.low;
-        const Vec2 q = emitter.low + Vec2{a, b} * extent;
-        const Vec3 at = emitter.at(q);
-        const Vec3 way = at - p;
-        const double squared = glm::dot(way, way);
-        const double cosines = glm::dot(n, way) * -glm::dot(emitter.n, way);
-        if (glm::dot(n, way) <= 0 || cosines <= 0 || !emitter.contains(q) || !scene.sees(p, at)) return Rgb{0.0};
-        return emitter.radiance * (cosines / (squared * squared) * extent.x * extent.y);
+        return extent.x * extent.y;
     }
 
     Rgb direct_stratified(const Vec3& p, const Vec3& n, Random& random) const
@@ -72,21 +74,34 @@ struct Tracer {
                 for (int j = 0; j < strata; ++j) {
                     const double a = (i + random()) / strata;
                     const double b = (j + random()) / strata;
-                    sum += from_emitter(scene.polygons()[e], p, n, a, b);
+                    const Polygon& emitter = scene.polygons()[e];
+                    sum += sight(emitter, p, n, a, b).cosines_over_r2 * rectangle(emitter) * emitter.radiance;
                 }
         return sum / static_cast<double>(strata * strata);
     }
 
-    /// One emitter, drawn by its power.
+    /// One point of each emitter. Weighed against the chance that the path's next ray would hit the same point
+    /// [VeachGuibas95, balance heuristic]: beside an emitter's edge 1/r² alone has no finite variance.
     Rgb direct_once(const Vec3& p, const Vec3& n, Random& random) const
     {
-        if (emitters.empty()) return Rgb{0.0};
-        const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), random());
-        const auto k = static_cast<std::size_t>(std::min(found, cumulative.end() - 1) - cumulative.begin());
-        const double share = cumulative[k] - (k > 0 ? cumulative[k - 1] : 0.0);
-        const double a = random();
-        const double b = random();
-        return from_emitter(scene.polygons()[emitters[k]], p, n, a, b) / share;
+        Rgb sum{0.0};
+        for (const std::size_t e : emitters) {
+            const Polygon& emitter = scene.polygons()[e];
+            const double a = random();
+            const double b = random();
+            const Sight seen = sight(emitter, p, n, a, b);
+            if (seen.cosines_over_r2 <= 0) continue;
+            const double weight = seen.per_solid_angle / (seen.per_solid_angle + seen.cosine / pi);
+            sum += weight * seen.cosines_over_r2 * rectangle(emitter) * emitter.radiance;
+        }
+        return sum;
+    }
+
+    /// The weight of emission that a ray from a surface hits by chance, beside direct_once().
+    static double weight_of_chance(const Polygon& emitter, double r, double cosine_here, double cosine_there)
+    {
+        const double drawn = r * r / (cosine_there * rectangle(emitter));
+        return (cosine_here / pi) / (cosine_here / pi + drawn);
     }
 
     /// Cosine-weighted direction about n from two numbers of [0, 1).
@@ -100,26 +115,33 @@ struct Tracer {
         return glm::normalize(r * std::cos(phi) * u + r * std::sin(phi) * v + std::sqrt(1 - a) * n);
     }
 
-    /// What a cosine-weighted ray brings in, as irradiance: π times the radiance that arrives along it.
-    Rgb along(Vec3 p, Vec3 direction, Random& random) const
+    /// What a cosine-weighted ray brings in, as irradiance: π times the radiance that arrives along it. With
+    /// `drawn`, without what the emitters send straight to p.
+    Rgb along(Vec3 p, Vec3 n, Vec3 direction, Random& random) const
     {
+        const bool drawn = options.emitters == FindEmitters::drawn;
         Rgb gathered{0.0};
         Rgb carried{1.0};
-        for (;;) {
+        for (bool first = true;; first = false) {
             const auto hit = scene.closest(p, direction);
             if (!hit || !hit->front) return gathered;
             const Polygon& polygon = scene.polygons()[hit->polygon];
-            if (options.emitters == FindEmitters::by_chance) gathered += carried * pi * polygon.radiance;
+            if (polygon.emits() && !(drawn && first)) {
+                const double here = glm::dot(n, direction), there = -glm::dot(polygon.n, direction);
+                const double weight = drawn ? weight_of_chance(polygon, hit->t, here, there) : 1.0;
+                gathered += weight * pi * carried * polygon.radiance;
+            }
             carried *= polygon.rho;
             const double survival = std::min(0.95, std::max({carried.r, carried.g, carried.b}));
             if (survival <= 0) return gathered;
             p += hit->t * direction;
-            if (options.emitters == FindEmitters::by_area) gathered += carried * direct_once(p, polygon.n, random);
+            n = polygon.n;
+            if (drawn) gathered += carried * direct_once(p, n, random);
             if (random() >= survival) return gathered;
             carried /= survival;
             const double a = random();
             const double b = random();
-            direction = direction_about(polygon.n, a, b);
+            direction = direction_about(n, a, b);
         }
     }
 
@@ -131,7 +153,7 @@ struct Tracer {
             for (int j = 0; j < strata; ++j) {
                 const double a = (i + random()) / strata;
                 const double b = (j + random()) / strata;
-                sum += along(p, direction_about(n, a, b), random);
+                sum += along(p, n, direction_about(n, a, b), random);
             }
         return sum / static_cast<double>(strata * strata);
     }
@@ -157,8 +179,8 @@ Irradiance measure_irradiance(const ReferenceScene& scene, const Vec3& p, const 
     std::vector<Rgb> direct, total;
     for (int replicate = 0; replicate < options.replicates; ++replicate) {
         Random random(options.seed, index, static_cast<std::uint64_t>(replicate));
-        const bool by_area = options.emitters == FindEmitters::by_area;
-        direct.push_back(by_area ? tracer.direct_stratified(p, n, random) : Rgb{0.0});
+        const bool drawn = options.emitters == FindEmitters::drawn;
+        direct.push_back(drawn ? tracer.direct_stratified(p, n, random) : Rgb{0.0});
         total.push_back(direct.back() + tracer.indirect_stratified(p, n, random));
     }
     return {summarise(direct), summarise(total)};

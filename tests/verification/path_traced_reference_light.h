@@ -10,15 +10,15 @@ namespace patchlight::reference {
 
 /// How emitters are found along a path.
 enum class FindEmitters {
-    by_area,   ///< a point on an emitter is drawn at every vertex of the path: for small emitters
-    by_chance  ///< emission is taken where the path hits it: for rooms that emit all over
+    drawn,  ///< a point of each emitter is drawn at every vertex, and what the path hits counts too: for small emitters
+    by_chance  ///< only emission that the path hits counts: for rooms that emit all over, and as a check on `drawn`
 };
 
 struct PathOptions {
     int replicates = 32;        ///< independent repetitions, ≥ 2: their spread gives the standard error
     int light_strata = 16;      ///< n × n points on each emitter, a replicate, for the direct light
     int direction_strata = 30;  ///< n × n first directions, a replicate
-    FindEmitters emitters = FindEmitters::by_area;
+    FindEmitters emitters = FindEmitters::drawn;
     std::uint64_t seed = 1;
 };
 

@@ -154,12 +154,12 @@ TEST(PathTracedReference, BothWaysOfFindingEmittersAgree)
     const ReferenceScene scene = lit_cube();
     PathOptions options{.replicates = 32, .light_strata = 8, .direction_strata = 36};
     const Vec3 p{0.3, 0.6, 0}, n{0, 0, 1};
-    const Measured by_area = measure_irradiance(scene, p, n, options, 0).total;
+    const Measured drawn = measure_irradiance(scene, p, n, options, 0).total;
     options.emitters = FindEmitters::by_chance;
     const Measured by_chance = measure_irradiance(scene, p, n, options, 1).total;
-    const double spread = std::hypot(by_area.standard_error.g, by_chance.standard_error.g);
-    EXPECT_NEAR(by_area.mean.g, by_chance.mean.g, 4 * spread);
-    EXPECT_LT(spread, 0.03 * by_area.mean.g);
+    const double spread = std::hypot(drawn.standard_error.g, by_chance.standard_error.g);
+    EXPECT_NEAR(drawn.mean.g, by_chance.mean.g, 4 * spread);
+    EXPECT_LT(spread, 0.03 * drawn.mean.g);
 }
 
 }  // namespace
