@@ -1,0 +1,53 @@
+#include "apps/imaging/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace patchlight {
+
+double auto_exposure(const Scene& scene, const ViewHits& hits, const Image& radiance)
+{
+    std::vector<double> lit;
+    for (int y = 0; y < radiance.height; ++y) {
+        for (int x = 0; x < radiance.width; ++x) {
+            const std::uint32_t surface = hits.surface[static_cast<std::size_t>(y) * radiance.width + x];
+            if (surface >= HitBatch::black_back || scene.material_of(SurfaceId(surface)).emits()) {
+                continue;
+            }
+            const double value = luminance(radiance.at(x, y));
+            if (value > 0) {
+                lit.push_back(value);
+            }
+        }
+    }
+    if (lit.empty()) {
+        return 0;
+    }
+    const auto high = lit.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(lit.size() - 1));
+    std::nth_element(lit.begin(), high, lit.end());
+    return std::log2(0.6 / *high);
+}
+
+double white_at(double exposure)
+{
+    return std::exp2(-exposure);
+}
+
+double srgb_encoded(double linear)
+{
+    linear = std::clamp(linear, 0.0, 1.0);
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+Image to_srgb(const Image& radiance, double exposure)
+{
+    Image result(radiance.width, radiance.height);
+    const double scale = std::exp2(exposure);
+    std::transform(radiance.rgb.begin(), radiance.rgb.end(), result.rgb.begin(), [&](float value) {
+        return static_cast<float>(srgb_encoded(scale * static_cast<double>(value)));
+    });
+    return result;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "meshing/scene.h"
+
+namespace patchlight {
+
+class RayCaster;
+
+/// The rays of a pinhole camera through the points of a picture.
+class ViewRays {
+public:
+    /// The vertical field of view fills the picture's height; pixels are square. An `up` along the direction of
+    /// view is replaced by an axis.
+    ViewRays(const View& view, int width, int height);
+
+    const Vec3& from() const { return from_; }
+
+    /// Through (x, y) in pixels, from the left and the top: (0.5, 0.5) is the centre of the first pixel. Unit length.
+    Vec3 direction(double x, double y) const;
+
+private:
+    Vec3 from_;
+    Vec3 forward_;
+    Vec3 right_;  ///< of half the picture's height
+    Vec3 down_;
+    double half_width_;
+    double half_height_;
+};
+
+/// A camera for a scene that has none: of a fixed set of places (in the corners of the bounding box, looking to
+/// the opposite one; for open scenes also before each of its sides, looking at the middle) the one from which
+/// most of the picture shows fronts of surfaces, and many different ones. y is taken as up.
+View default_view(const Scene& scene, const RayCaster& caster);
+
+}  // namespace patchlight
