@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace patchlight {
+
+/// Output that could not be written (exit 6): the path and the system's reason.
+class OutputError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Writes files so that a reader sees the old or the new one whole, never a part: into a temporary beside the
+/// file, synced, renamed. It knows its unfinished temporaries, so that an interrupted program leaves none.
+/// May be used from several threads.
+class FileWriter {
+public:
+    /// Throws OutputError; the file is then what it was, and no temporary is left.
+    void write(const std::filesystem::path& file, std::span<const unsigned char> bytes);
+    void write(const std::filesystem::path& file, std::string_view text);
+
+    /// Makes a folder, and those above it. Throws OutputError.
+    static void make_folder(const std::filesystem::path& folder);
+
+    /// Unlinks what is unfinished. For the way out after an interrupt: nothing can be written afterwards.
+    void abandon() noexcept;
+
+    /// Deletes temporaries that a killed program left in a folder.
+    static void sweep(const std::filesystem::path& folder) noexcept;
+
+private:
+    std::mutex mutex_;
+    std::set<std::string> unfinished_;
+    bool abandoned_ = false;
+};
+
+/// The whole of a file. Throws std::runtime_error with the path and the reason.
+std::string read_bytes(const std::filesystem::path& file);
+
+}  // namespace patchlight

@@ -1,0 +1,229 @@
+#include "apps/run/run_folder.h"
+
+#include "apps/run/sha256.h"
+#include "apps/run/stored_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace patchlight {
+
+namespace {
+
+std::string text_of(const Json& json)
+{
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// Anything in the folder that isn't named, and isn't a temporary of ours?
+bool holds_others(const std::filesystem::path& folder, const std::vector<std::string>& named)
+{
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (std::find(named.begin(), named.end(), entry.path().filename().string()) == named.end()) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+RunFolder::RunFolder(std::filesystem::path folder, RunIdentity identity, FileWriter& writer,
+                     const std::vector<std::string>& also_ours)
+    : folder_(std::move(folder)), writer_(writer)
+{
+    std::error_code error;
+    const auto status = std::filesystem::status(folder_, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
+        throw FolderRefused(fmt::format("{} is a file; name a new folder", folder_.string()));
+    }
+    FileWriter::make_folder(folder_);
+    lock();
+    FileWriter::sweep(folder_);
+    take(identity, also_ours);
+    record_.identity = std::move(identity);
+    if (state_ == FolderState::unfinished) {
+        keep_whole_cycles();
+    }
+    if (state_ != FolderState::finished) {
+        record_.status = RunStatus::running;
+        record_.converged = false;
+        write_record();
+    }
+}
+
+RunFolder::~RunFolder()
+{
+    if (lock_ >= 0) {
+        ::close(lock_);
+    }
+}
+
+void RunFolder::lock()
+{
+    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0) {
+        throw OutputError(fmt::format("{}: {}", folder_.string(), std::generic_category().message(errno)));
+    }
+    // Not every file system can lock; then two programs at once are the user's own affair.
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(lock_);
+        lock_ = -1;
+        throw FolderRefused(fmt::format("{} is being written by another patchlight", folder_.string()));
+    }
+}
+
+void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>& also_ours)
+{
+    if (!std::filesystem::exists(folder_ / "run.json")) {
+        if (holds_others(folder_, also_ours)) {
+            throw FolderRefused(
+                fmt::format("{} is not empty and holds no run; name a new folder", folder_.string()));
+        }
+        return;
+    }
+    StoredRecord stored;
+    try {
+        stored = run_record_in(read_bytes(folder_ / "run.json"));
+    } catch (const std::runtime_error& problem) {
+        throw FolderRefused(
+            fmt::format("{}: run.json can't be read ({}); name a new folder", folder_.string(), problem.what()));
+    }
+    if (!same_run(stored.record.identity, identity)) {
+        throw FolderRefused(fmt::format("{} holds a run {}; name a new folder", folder_.string(),
+                                        stored.record.identity.content_sha256 == identity.content_sha256
+                                            ? "with other options"
+                                            : "of another scene, or of an earlier state of this one"));
+    }
+    const bool finished =
+        stored.record.status == RunStatus::finished || stored.record.status == RunStatus::not_converged;
+    if (!finished && (stored.version != tool_version() || stored.commit != tool_commit())) {
+        throw FolderRefused(fmt::format("{} holds an unfinished run of patchlight {} ({}), this is {} ({}); name a new folder",
+                                        folder_.string(), stored.version, stored.commit, tool_version(), tool_commit()));
+    }
+    state_ = finished ? FolderState::finished : FolderState::unfinished;
+    record_ = std::move(stored.record);
+    try {
+        timing_ = Json::parse(read_bytes(folder_ / "timing.json"));
+    } catch (const std::exception&) {
+        timing_ = Json();  // Only seconds are lost.
+    }
+}
+
+/// A killed program may have left a cycle half written, and run.json a cycle behind: the records on the disk count.
+void RunFolder::keep_whole_cycles()
+{
+    record_.cycles.clear();
+    for (int cycle = 0;; ++cycle) {
+        const std::filesystem::path folder = cycle_folder(cycle);
+        FileWriter::sweep(folder);
+        try {
+            const CycleRecord record = cycle_record_in(Json::parse(read_bytes(folder / "record.json")));
+            if (record.cycle != cycle || sha256_hex(read_bytes(folder / "solution.glb")) != record.solution_sha256) {
+                return;
+            }
+            record_.cycles.push_back(record);
+        } catch (const std::exception&) {
+            return;
+        }
+    }
+}
+
+RunRecord RunFolder::record() const
+{
+    const std::lock_guard lock(mutex_);
+    return record_;
+}
+
+std::filesystem::path RunFolder::cycle_folder(int cycle) const
+{
+    return folder_ / "cycles" / fmt::format("{:02}", cycle);
+}
+
+void RunFolder::write(const std::string& name, std::string_view bytes)
+{
+    writer_.write(folder_ / name, bytes);
+}
+
+void RunFolder::write_in_cycle(int cycle, const std::string& name, std::string_view bytes)
+{
+    FileWriter::make_folder(cycle_folder(cycle));
+    writer_.write(cycle_folder(cycle) / name, bytes);
+}
+
+void RunFolder::finish_cycle(const CycleRecord& record, const Json& seconds)
+{
+    write_in_cycle(record.cycle, "record.json", text_of(json_of(record)));
+    const std::lock_guard lock(mutex_);
+    record_.cycles.push_back(record);
+    write_record();
+    Json kept = Json::array();
+    if (timing_.is_object() && timing_.contains("cycles") && timing_["cycles"].is_array()) {
+        for (const Json& old : timing_["cycles"]) {
+            if (old.is_object() && old.value("cycle", record.cycle) < record.cycle) {
+                kept.push_back(old);
+            }
+        }
+    }
+    kept.push_back(seconds);
+    timing_["cycles"] = kept;
+    writer_.write(folder_ / "timing.json", text_of(timing_));
+}
+
+void RunFolder::set_warnings(std::vector<std::string> warnings)
+{
+    const std::lock_guard lock(mutex_);
+    for (std::string& warning : warnings) {
+        warning = as_utf8(warning);
+    }
+    record_.warnings = std::move(warnings);
+}
+
+void RunFolder::finish(RunStatus status, bool converged, const Json& machine)
+{
+    const std::lock_guard lock(mutex_);
+    record_.status = status;
+    record_.converged = converged;
+    if (status == RunStatus::interrupted) {
+        std::error_code error;
+        std::filesystem::remove_all(cycle_folder(static_cast<int>(record_.cycles.size())), error);
+    }
+    timing_.update(machine);
+    writer_.write(folder_ / "timing.json", text_of(timing_));
+    write_record();
+    if (status == RunStatus::finished || status == RunStatus::not_converged) {
+        state_ = FolderState::finished;
+    }
+}
+
+void RunFolder::interrupt() noexcept
+{
+    const std::lock_guard lock(mutex_);
+    if (state_ == FolderState::finished) {
+        return;
+    }
+    interrupted_ = true;
+    try {
+        write_record();
+    } catch (const std::exception&) {
+        // On the way out: without the mark the run still counts as unfinished.
+    }
+}
+
+/// With the mutex held, or before anybody else knows the folder.
+void RunFolder::write_record()
+{
+    RunRecord shown = record_;
+    if (interrupted_ && shown.status == RunStatus::running) {
+        shown.status = RunStatus::interrupted;
+    }
+    writer_.write(folder_ / "run.json", text_of(json_of(shown)));
+}
+
+}  // namespace patchlight

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "meshing/read_scene.h"
+#include "solver/adaptive.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+
+/// Keys stay in the order they are written.
+using Json = nlohmann::ordered_json;
+
+/// A mode and the word that the command and the files have for it.
+template <class Mode>
+using ModeNames = std::vector<std::pair<std::string, Mode>>;
+
+const ModeNames<Refine>& refine_names();
+const ModeNames<Solver>& solver_names();
+const ModeNames<FormFactorMethod>& form_factor_names();
+const ModeNames<Indicator>& indicator_names();
+const ModeNames<Marking>& marking_names();
+const ModeNames<Stage>& stage_names();
+
+/// The word for a mode.
+template <class Mode>
+std::string name_of(const ModeNames<Mode>& names, Mode mode)
+{
+    for (const auto& [name, value] : names) {
+        if (value == mode) {
+            return name;
+        }
+    }
+    return "unknown";
+}
+
+/// The mode of a word. Throws std::invalid_argument.
+template <class Mode>
+Mode mode_of(const ModeNames<Mode>& names, const std::string& word)
+{
+    for (const auto& [name, value] : names) {
+        if (name == word) {
+            return value;
+        }
+    }
+    throw std::invalid_argument("unknown word \"" + word + "\"");
+}
+
+/// The effective options as they are written into every result; lengths in metres, angles in degrees.
+Json json_of(const AdaptiveOptions& options);
+Json json_of(const SceneOptions& options);
+Json json_of(const View& view);
+Json json_of(const Rgb& value);
+
+}  // namespace patchlight

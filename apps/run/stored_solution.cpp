@@ -1,0 +1,122 @@
+#include "apps/run/stored_solution.h"
+
+#include "apps/run/file_writer.h"
+#include "apps/run/glb_file.h"
+#include "apps/run/stored_scene.h"
+#include "meshing/scene_error.h"
+
+#include <stdexcept>
+
+namespace patchlight {
+
+namespace {
+
+std::vector<std::uint32_t> surface_values(std::span<const SurfaceId> ids)
+{
+    std::vector<std::uint32_t> values;
+    values.reserve(ids.size());
+    for (SurfaceId id : ids) {
+        values.push_back(id.value);
+    }
+    return values;
+}
+
+std::vector<SurfaceId> surface_ids(const ByteViews& views, const std::string& name, const Scene& scene)
+{
+    std::vector<SurfaceId> ids;
+    for (std::uint32_t value : integers_in(views, name)) {
+        if (value >= scene.surfaces.size()) {
+            throw SceneError("solution", "an index in \"" + name + "\" leaves its array");
+        }
+        ids.push_back(SurfaceId(value));
+    }
+    return ids;
+}
+
+PatchMeshArrays arrays_in(const ByteViews& views, const Scene& scene)
+{
+    PatchMeshArrays arrays;
+    arrays.positions = vectors_in(views, "positions");
+    const std::vector<std::uint32_t> corners = integers_in(views, "patches");
+    if (corners.size() % 3 != 0) {
+        throw SceneError("solution", "the array \"patches\" is cut short");
+    }
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        arrays.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    }
+    arrays.patch_surface = surface_ids(views, "patch_surface", scene);
+    arrays.vertex_surface = surface_ids(views, "vertex_surface", scene);
+    if (arrays.patch_surface.size() != arrays.triangles.size() ||
+        arrays.vertex_surface.size() != arrays.positions.size()) {
+        throw SceneError("solution", "its arrays don't fit together");
+    }
+    return arrays;
+}
+
+template <class Values>
+Values of_size(Values values, std::size_t size)
+{
+    if (values.size() != size) {
+        throw SceneError("solution", "its arrays don't fit together");
+    }
+    return values;
+}
+
+StoredSolution restore(const ByteViews& views)
+{
+    StoredSolution stored;
+    stored.scene = restore_scene(views);
+    stored.mesh = PatchMesh(stored.scene, arrays_in(views, stored.scene));
+    const std::size_t patches = stored.mesh.patch_count(), vertices = stored.mesh.vertex_count();
+    stored.B = Radiosity(of_size(vectors_in(views, "patch_radiosity"), patches));
+    stored.vertex_B = VertexRadiosity(of_size(vectors_in(views, "vertex_radiosity"), vertices));
+    stored.eta = PatchField<double>(of_size(doubles_in(views, "eta"), patches));
+    return stored;
+}
+
+}  // namespace
+
+std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Radiosity& B,
+                            const VertexRadiosity& vertex_B, const PatchField<double>& eta)
+{
+    const PatchMeshArrays& arrays = mesh.arrays();
+    std::vector<std::uint32_t> corners;
+    corners.reserve(arrays.triangles.size() * 3);
+    for (const auto& t : arrays.triangles) {
+        corners.insert(corners.end(), t.begin(), t.end());
+    }
+    ByteViews views;
+    store_scene(scene, views);
+    views["positions"] = bytes_of(std::span<const Vec3>(arrays.positions));
+    views["patches"] = bytes_of(corners);
+    views["patch_surface"] = bytes_of(surface_values(arrays.patch_surface));
+    views["vertex_surface"] = bytes_of(surface_values(arrays.vertex_surface));
+    views["patch_radiosity"] = bytes_of(B.values());
+    views["vertex_radiosity"] = bytes_of(vertex_B.values());
+    views["eta"] = bytes_of(eta.values());
+    return encode_glb(scene, mesh, vertex_B, views);
+}
+
+StoredSolution decode_solution(std::string_view bytes, const std::string& name)
+{
+    try {
+        return restore(decode_glb(bytes));
+    } catch (const SceneError& error) {
+        throw SceneError("solution", name + ": " + error.what());
+    } catch (const std::invalid_argument& error) {
+        throw SceneError("solution", name + ": " + error.what());
+    }
+}
+
+StoredSolution read_solution(const std::filesystem::path& file)
+{
+    std::string bytes;
+    try {
+        bytes = read_bytes(file);
+    } catch (const std::runtime_error& error) {
+        throw SceneError("solution", error.what());
+    }
+    return decode_solution(bytes, file.string());
+}
+
+}  // namespace patchlight
