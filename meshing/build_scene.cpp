@@ -1,6 +1,8 @@
 #include "meshing/build_scene.h"
 
 #include "meshing/arrange_plane.h"
+#include "meshing/closedness.h"
+#include "meshing/crossing_faces.h"
 #include "meshing/edge_chains.h"
 #include "meshing/join_surfaces.h"
 #include "meshing/plane_groups.h"
@@ -130,6 +132,7 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
     report.warnings = raw.warnings;
     PolygonSoup soup = make_polygon_soup(raw, options, report);
     require_light(raw, soup, options);
+    report.crossing_faces = count_crossing_faces(soup);
     const EdgeChains chains(soup, report);
     report.nonmanifold_edges = count_nonmanifold_edges(soup, chains);
     const std::vector<std::uint32_t> rank = rank_faces(soup);
@@ -153,6 +156,7 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
     compact_vertices(scene);
     sort_scene(scene);
     add_views(raw, scene);
+    scene.closed = is_closed(scene);
     return loaded;
 }
 

@@ -2,10 +2,10 @@
 
 #include "meshing/plane_frame.h"
 #include "meshing/trace_loops.h"
+#include "meshing/union_find.h"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 namespace patchlight {
@@ -57,25 +57,6 @@ void for_each_edge(const std::vector<HalfEdge>& edges, Visit visit)
         visit(edges[i], other);
     }
 }
-
-class UnionFind {
-public:
-    explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
-    std::uint32_t root(std::uint32_t i)
-    {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// Joins one side of an arrangement.
 class SideJoiner {
