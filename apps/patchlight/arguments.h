@@ -1,0 +1,93 @@
+#pragma once
+
+#include "apps/imaging/picture.h"
+#include "apps/run/run_folder.h"
+#include "meshing/read_scene.h"
+#include "solver/adaptive.h"
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace patchlight {
+
+/// How a scene's file is to be read.
+struct SceneArguments {
+    std::string file;
+    SceneOptions options;
+    std::string view;  ///< a camera's name or a file; empty: the scene's first
+    std::string unit_name = "m";
+};
+
+struct PictureArguments {
+    bool pictures = true;
+    std::optional<std::pair<int, int>> size;  ///< unset: 640 high, as wide as the camera says
+    std::vector<int> snapshots;
+};
+
+struct SolveCommand {
+    SceneArguments scene;
+    std::string run;
+    AdaptiveOptions options;
+    PictureArguments pictures;
+    bool quiet = false;
+    bool json = false;
+    bool demo = false;
+    int threads = 0;  ///< 0: as many as there are
+};
+
+struct DemoCommand {
+    std::string folder = "patchlight-demo";
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+
+struct InspectCommand {
+    SceneArguments scene;
+    bool json = false;
+};
+
+struct RenderCommand {
+    std::string run;
+    std::string image;
+    WhichCycle cycle;
+    std::string view;
+    std::optional<Vec3> from, to;  ///< in the scene file's units
+    Vec3 up{0, 1, 0};
+    std::optional<double> vertical_fov;
+    std::optional<std::pair<int, int>> size;
+    Shade shade = Shade::gouraud;
+    bool wireframe = false;
+    std::optional<double> exposure;  ///< unset: auto
+};
+
+struct ProbeCommand {
+    std::string run;
+    std::string points;
+    std::string output;  ///< empty: standard output
+    WhichCycle cycle;
+};
+
+struct ExportCommand {
+    std::string run;
+    std::string format;
+    std::string output;
+};
+
+/// What only prints: --help and --version.
+struct PrintCommand {
+    std::string text;
+};
+
+using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
+                             PrintCommand>;
+
+/// Throws UsageError ("usage") for whatever isn't exactly understood.
+Command parse_arguments(int argc, const char* const* argv);
+
+/// The metres in a unit; throws UsageError.
+double metres_per(const std::string& unit);
+
+}  // namespace patchlight

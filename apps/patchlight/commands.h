@@ -1,0 +1,26 @@
+#pragma once
+
+#include "apps/patchlight/arguments.h"
+#include "apps/patchlight/interruption.h"
+#include "apps/patchlight/terminal.h"
+#include "apps/run/file_writer.h"
+
+namespace patchlight {
+
+/// What every command works with.
+struct Session {
+    Messages& messages;
+    Interruption& interruption;
+    FileWriter& writer;
+};
+
+/// Each does what its arguments say and returns the exit code; errors are thrown.
+int run_command(const SolveCommand& command, Session& session);
+int run_command(const DemoCommand& command, Session& session);
+int run_command(const InspectCommand& command, Session& session);
+int run_command(const RenderCommand& command, Session& session);
+int run_command(const ProbeCommand& command, Session& session);
+int run_command(const ExportCommand& command, Session& session);
+int run_command(const PrintCommand& command, Session& session);
+
+}  // namespace patchlight

@@ -1,0 +1,62 @@
+#include "apps/patchlight/cost_estimate.h"
+
+#include "apps/patchlight/scene_input.h"
+#include "apps/patchlight/usage_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unistd.h>
+
+namespace patchlight {
+
+namespace {
+
+// A triangle of a Delaunay mesh with longest edge L covers about a quarter of L².
+constexpr double area_per_squared_edge = 0.25;
+// A row of factors holds at most an entry a ray: a column and a factor. Beside it mesh, fields and their copies.
+constexpr double bytes_per_entry = 8, bytes_per_element = 1500;
+
+double physical_memory()
+{
+    return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+}
+
+double elements_of(const Scene& scene, const AdaptiveOptions& options)
+{
+    const double budget = static_cast<double>(options.max_elements);
+    if (options.meshing.max_edge <= 0) {
+        return budget;
+    }
+    const double edge = options.meshing.max_edge;
+    const double first = total_area(scene) / (area_per_squared_edge * edge * edge);
+    return options.refine == Refine::none ? first : std::max(budget, first);
+}
+
+}  // namespace
+
+CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
+{
+    const double elements = elements_of(scene, options);
+    const double rows = std::min(elements, static_cast<double>(options.form_factors.rays));
+    CostEstimate cost;
+    cost.elements = static_cast<std::size_t>(std::min(elements, 1e18));
+    // Cycles grow geometrically: together about three times the last one; half as many vertices as elements.
+    cost.rays = 3 * elements * (options.form_factors.rays + 0.5 * options.gather.rays);
+    cost.bytes = elements * (rows * bytes_per_entry + bytes_per_element);
+    return cost;
+}
+
+void check_memory(const Scene& scene, const AdaptiveOptions& options)
+{
+    const double needed = estimate_cost(scene, options).bytes;
+    const double limit = 0.8 * physical_memory();
+    if (needed > limit) {
+        constexpr double gib = 1024.0 * 1024 * 1024;
+        throw LimitError(fmt::format("needs {:.1f} GiB, limit {:.1f} GiB (80 % of the memory); ask for fewer elements, "
+                                     "longer edges or fewer rays",
+                                     needed / gib, limit / gib));
+    }
+}
+
+}  // namespace patchlight

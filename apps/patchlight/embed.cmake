@@ -1,0 +1,28 @@
+# Writes a .cpp that holds FILES (names in FOLDER) as byte arrays behind demo_scene_files().
+set(arrays "")
+set(entries "")
+set(number 0)
+foreach(name IN LISTS FILES)
+  file(READ ${FOLDER}/${name} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${hex}")
+  string(APPEND arrays "constexpr char file_${number}[] = {${bytes}};\n")
+  string(APPEND entries "        {\"${name}\", {file_${number}, sizeof file_${number}}},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${OUTPUT} "#include \"apps/patchlight/demo_scene.h\"
+
+namespace patchlight {
+
+namespace {
+
+${arrays}
+}  // namespace
+
+std::vector<std::pair<std::string_view, std::string_view>> demo_scene_files()
+{
+    return {
+${entries}    };
+}
+
+}  // namespace patchlight
+")

@@ -1,0 +1,370 @@
+#include "apps/patchlight/arguments.h"
+
+#include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/usage_error.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+
+namespace patchlight {
+
+namespace {
+
+const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+constexpr int most_threads = 1024;
+
+/// Words that are only understood once everything has been read.
+struct Texts {
+    std::vector<std::string> two_sided, emitters;
+    std::string refine = "intensity", solver = "gauss-seidel", method = "hemisphere", indicator = "residual",
+                marking = "doerfler", pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto",
+                cycle = "last", from, to, up = "0,1,0";
+    double max_edge = 0, fov = 0;
+    CLI::Option* max_elements_option = nullptr;
+};
+
+template <class Mode>
+std::vector<std::string> words(const ModeNames<Mode>& names)
+{
+    std::vector<std::string> result;
+    for (const auto& entry : names) {
+        result.push_back(entry.first);
+    }
+    return result;
+}
+
+void add_scene(CLI::App& app, SceneArguments& scene, Texts& texts)
+{
+    app.add_option("scene", scene.file, "OBJ, glTF or GLB file")->required()->type_name("SCENE");
+    app.add_option("--unit", scene.unit_name, "unit of the file's coordinates")
+        ->check(CLI::IsMember({"m", "cm", "mm", "in", "ft"}))
+        ->capture_default_str();
+    app.add_option("--two-sided", texts.two_sided, "a material with two sides, or all; may be given again [none]")
+        ->type_name("MATERIAL|all")
+        ->allow_extra_args(false);
+    app.add_option("--emitter", texts.emitters,
+                   "exitance in W/m2 of a material, one number or r,g,b; may be given again [the file's]")
+        ->type_name("MATERIAL=W")
+        ->allow_extra_args(false);
+    app.add_option("--max-reflectance", scene.options.max_reflectance, "used where a file says exactly 1")
+        ->check(number_between(1e-6, 0.999999))
+        ->type_name("RHO")
+        ->capture_default_str();
+}
+
+void add_machine(CLI::App& app, int& threads, bool& quiet, bool& json)
+{
+    app.add_option("--threads", threads, "threads to work with [all]")
+        ->check(whole_between(1, most_threads))
+        ->type_name("N");
+    app.add_flag("--quiet", quiet, "no progress; warnings and errors only [off]");
+    app.add_flag("--json", json, "print run.json instead of a summary [off]");
+}
+
+void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
+{
+    AdaptiveOptions& o = c.options;
+    app.add_option("--refine", t.refine, "where the mesh is refined; none: one uniform mesh")
+        ->check(CLI::IsMember(words(refine_names())))
+        ->capture_default_str();
+    app.add_option("--max-edge", t.max_edge,
+                   "longest edge of the first mesh, in --unit [intensity: a twelfth of the scene's diameter; none: "
+                   "what --max-elements allows]")
+        ->check(number_above(0))
+        ->type_name("LENGTH");
+    t.max_elements_option = app.add_option("--max-elements", o.max_elements, "budget of elements (triangles)")
+                                ->check(whole_between(1, 1'000'000'000))
+                                ->type_name("N")
+                                ->capture_default_str();
+    app.add_option("--target-error", o.target_error,
+                   "stop when the estimated relative error is below; 0: go on to the budget")
+        ->check(number_between(0, 1))
+        ->type_name("FRACTION")
+        ->capture_default_str();
+    app.add_option("--iterations", o.iterations, "adaptive cycles at most")
+        ->check(whole_between(1, 1000))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--indicator", t.indicator, "what is taken for the error of a patch")
+        ->check(CLI::IsMember(words(indicator_names())))
+        ->capture_default_str();
+    app.add_option("--marking", t.marking, "how patches to refine are chosen")
+        ->check(CLI::IsMember(words(marking_names())))
+        ->capture_default_str();
+}
+
+void add_light(CLI::App& app, SolveCommand& c, Texts& t)
+{
+    AdaptiveOptions& o = c.options;
+    app.add_option("--solver", t.solver, "of the final solve")
+        ->check(CLI::IsMember(words(solver_names())))
+        ->capture_default_str();
+    app.add_option("--tolerance", o.final.tolerance, "of the final solve")
+        ->check(number_between(1e-12, 0.5))
+        ->type_name("T")
+        ->capture_default_str();
+    app.add_option("--form-factors", t.method, "how form factors are found")
+        ->check(CLI::IsMember(words(form_factor_names())))
+        ->capture_default_str();
+    app.add_option("--rays", o.form_factors.rays, "form-factor rays per patch")
+        ->check(whole_between(16, 65536))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--vertex-rays", o.gather.rays, "rays per vertex of the final gathering")
+        ->check(whole_between(16, 65536))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--crease-angle", o.gather.crease_angle,
+                   "degrees below which facets of one material are shaded as one curved surface")
+        ->check(number_between(0, 180))
+        ->type_name("DEG")
+        ->capture_default_str();
+    app.add_option("--seed", o.form_factors.seed, "of all random numbers")
+        ->check(whole_between(0, 9'000'000'000'000'000'000))
+        ->type_name("N")
+        ->capture_default_str();
+}
+
+void add_pictures(CLI::App& app, SolveCommand& c, Texts& t)
+{
+    app.add_option("--pictures", t.pictures, "which pictures are written")
+        ->check(CLI::IsMember({"all", "none"}))
+        ->capture_default_str();
+    app.add_option("--size", t.size, "of the pictures [640 high, as wide as the camera says or 640]")->type_name("WxH");
+    app.add_option("--snapshots", t.snapshots,
+                   "pictures of the progressive solution after so many shots, as 1,2,3,16 [none]")
+        ->type_name("LIST");
+    app.add_option("--view", c.scene.view,
+                   "a camera of the scene, or a JSON file {name, from, to or forward, up, fov} in the scene's units "
+                   "[the scene's first; for an OBJ those of STEM.view.json beside it; or one that is chosen]")
+        ->type_name("NAME|FILE");
+}
+
+void finish_scene(SceneArguments& scene, const Texts& t)
+{
+    scene.options.unit = metres_per(scene.unit_name);
+    for (const std::string& name : t.two_sided) {
+        if (name == "all") {
+            scene.options.all_two_sided = true;
+        } else {
+            scene.options.two_sided.push_back(name);
+        }
+    }
+    for (const std::string& text : t.emitters) {
+        if (!scene.options.emitters.insert(emitter_in("--emitter", text)).second) {
+            throw UsageError("usage", "--emitter: \"" + text + "\" names a material for the second time");
+        }
+    }
+}
+
+void finish_solve(SolveCommand& c, const Texts& t)
+{
+    finish_scene(c.scene, t);
+    AdaptiveOptions& o = c.options;
+    o.refine = mode_of(refine_names(), t.refine);
+    o.final.solver = mode_of(solver_names(), t.solver);
+    o.form_factors.method = mode_of(form_factor_names(), t.method);
+    o.estimate.indicator = mode_of(indicator_names(), t.indicator);
+    o.mark.marking = mode_of(marking_names(), t.marking);
+    o.gather.seed = o.form_factors.seed;
+    o.meshing.max_edge = t.max_edge * c.scene.options.unit;
+    if (o.refine == Refine::none && (t.max_edge <= 0 || t.max_elements_option->count() > 0)) {
+        o.meshing.max_elements = o.max_elements;
+    }
+    c.pictures.pictures = t.pictures == "all";
+    if (!t.size.empty()) {
+        c.pictures.size = size_in("--size", t.size);
+    }
+    if (!t.snapshots.empty()) {
+        c.pictures.snapshots = shots_in("--snapshots", t.snapshots);
+    }
+    if (!c.pictures.pictures && !c.pictures.snapshots.empty()) {
+        throw UsageError("usage", "--snapshots are pictures, and --pictures none wants none");
+    }
+}
+
+void add_render(CLI::App& app, RenderCommand& c, Texts& t)
+{
+    app.add_option("run", c.run, "folder of a run")->required()->type_name("RUN");
+    app.add_option("-o", c.image, ".png or .exr file to write")->required()->type_name("IMAGE");
+    app.add_option("--cycle", t.cycle, "which cycle: a number, first or last")->type_name("N")->capture_default_str();
+    auto* view = app.add_option("--view", c.view, "a camera of the run [the first]")->type_name("NAME");
+    app.add_option("--from", t.from, "where the camera is, in the scene file's units [the view's]")
+        ->type_name("x,y,z")
+        ->excludes(view);
+    app.add_option("--to", t.to, "what it looks at [what the view looks at]")->type_name("x,y,z")->excludes(view);
+    app.add_option("--up", t.up, "what is up with --from and --to")->type_name("x,y,z")->capture_default_str();
+    app.add_option("--fov", t.fov, "vertical field of view, degrees [the view's]")
+        ->check(number_between(0.1, 170))
+        ->type_name("DEG");
+    app.add_option("--size", t.size, "of the picture [640 high, as wide as the camera says or 640]")->type_name("WxH");
+    app.add_option("--shade", t.shade, "linear reconstruction, or one value a patch")
+        ->check(CLI::IsMember({"gouraud", "flat"}))
+        ->capture_default_str();
+    app.add_flag("--wireframe", c.wireframe, "draw the patches' edges [off]");
+    app.add_option("--exposure", t.exposure, "stops, or auto; an .exr is always linear")
+        ->type_name("EV|auto")
+        ->capture_default_str();
+}
+
+void finish_render(RenderCommand& c, const Texts& t)
+{
+    c.cycle = cycle_in("--cycle", t.cycle);
+    c.shade = t.shade == "flat" ? Shade::flat : Shade::gouraud;
+    if (t.from.empty() != t.to.empty()) {
+        throw UsageError("usage", "--from and --to belong together");
+    }
+    if (!t.from.empty()) {
+        c.from = vector_in("--from", t.from);
+        c.to = vector_in("--to", t.to);
+    }
+    c.up = vector_in("--up", t.up);
+    if (c.from && (*c.from == *c.to || c.up == Vec3(0.0))) {
+        throw UsageError("usage", "--from and --to are one point, or --up has no length");
+    }
+    if (t.fov > 0) {
+        c.vertical_fov = t.fov;
+    }
+    if (!t.size.empty()) {
+        c.size = size_in("--size", t.size);
+    }
+    if (t.exposure != "auto") {
+        c.exposure = number_in("--exposure", t.exposure);
+    }
+    if (!c.image.ends_with(".png") && !c.image.ends_with(".exr")) {
+        throw UsageError("usage", "-o: \"" + c.image + "\" ends neither in .png nor in .exr");
+    }
+}
+
+/// All that CLI11 fills in; lives while it parses.
+struct Parser {
+    CLI::App app{"Patchlight: radiosity on adaptive meshes.", "patchlight"};
+    SolveCommand solve;
+    DemoCommand demo;
+    InspectCommand inspect;
+    RenderCommand render;
+    ProbeCommand probe;
+    ExportCommand exported;
+    Texts solve_texts, inspect_texts, render_texts, probe_texts;
+
+    Parser()
+    {
+        app.require_subcommand(1);
+        app.set_version_flag("--version", fmt::format("patchlight {} ({})", tool_version(), tool_commit()));
+        app.set_help_flag("-h,--help", "print this and stop");
+        app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 bad scene, 4 not converged, 5 over a limit,\n"
+                   "6 output could not be written, 130/143 interrupted.\n"
+                   "patchlight COMMAND --help tells a command's options.");
+        add_demo();
+        add_inspect();
+        add_solve();
+        add_render(*app.add_subcommand("render", "A picture of a stored run"), render, render_texts);
+        add_probe();
+        add_export();
+    }
+
+    void add_demo()
+    {
+        auto& c = *app.add_subcommand("demo", "The Cornell box: coarse, refined, and both side by side");
+        c.add_option("-o", demo.folder, "folder to write")->type_name("DIR")->capture_default_str();
+        add_machine(c, demo.threads, demo.quiet, demo.json);
+    }
+
+    void add_inspect()
+    {
+        auto& c = *app.add_subcommand("inspect", "What a scene holds, and what was mended or left out");
+        add_scene(c, inspect.scene, inspect_texts);
+        c.add_flag("--json", inspect.json, "print JSON [off]");
+    }
+
+    void add_solve()
+    {
+        auto& c = *app.add_subcommand("solve", "Mesh, light, error: the whole loop on a scene");
+        add_scene(c, solve.scene, solve_texts);
+        c.add_option("-o", solve.run, "new folder, or one to resume")->required()->type_name("RUN");
+        add_meshing(c, solve, solve_texts);
+        add_light(c, solve, solve_texts);
+        add_pictures(c, solve, solve_texts);
+        add_machine(c, solve.threads, solve.quiet, solve.json);
+    }
+
+    void add_probe()
+    {
+        auto& c = *app.add_subcommand("probe", "Radiosity at points of the surfaces");
+        c.add_option("run", probe.run, "folder of a run")->required()->type_name("RUN");
+        c.add_option("--points", probe.points, "CSV of x,y,z or x,y,z,nx,ny,nz in the scene file's units")
+            ->required()
+            ->type_name("FILE");
+        c.add_option("-o", probe.output, "CSV to write [standard output]")->type_name("FILE");
+        c.add_option("--cycle", probe_texts.cycle, "which cycle: a number, first or last")
+            ->type_name("N")
+            ->capture_default_str();
+    }
+
+    void add_export()
+    {
+        auto& c = *app.add_subcommand("export", "The solution in other programs' formats");
+        c.add_option("run", exported.run, "folder of a run")->required()->type_name("RUN");
+        c.add_option("--format", exported.format, "of the file")
+            ->required()
+            ->check(CLI::IsMember({"glb", "ply", "csv"}));
+        c.add_option("-o", exported.output, "file to write")->required()->type_name("FILE");
+    }
+
+    Command chosen()
+    {
+        if (app.got_subcommand("solve")) {
+            finish_solve(solve, solve_texts);
+            return solve;
+        }
+        if (app.got_subcommand("inspect")) {
+            finish_scene(inspect.scene, inspect_texts);
+            return inspect;
+        }
+        if (app.got_subcommand("render")) {
+            finish_render(render, render_texts);
+            return render;
+        }
+        if (app.got_subcommand("probe")) {
+            probe.cycle = cycle_in("--cycle", probe_texts.cycle);
+            return probe;
+        }
+        if (app.got_subcommand("export")) {
+            return exported;
+        }
+        return demo;
+    }
+};
+
+}  // namespace
+
+double metres_per(const std::string& unit)
+{
+    const auto found = units.find(unit);
+    if (found == units.end()) {
+        throw UsageError("usage", "--unit: \"" + unit + "\" is none of m, cm, mm, in, ft");
+    }
+    return found->second;
+}
+
+Command parse_arguments(int argc, const char* const* argv)
+{
+    Parser parser;
+    try {
+        parser.app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        for (const CLI::App* command : parser.app.get_subcommands()) {
+            return PrintCommand{command->help("patchlight")};
+        }
+        return PrintCommand{parser.app.help()};
+    } catch (const CLI::CallForVersion& version) {
+        return PrintCommand{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        throw UsageError("usage", std::string(error.what()) + " (patchlight --help tells more)");
+    }
+    return parser.chosen();
+}
+
+}  // namespace patchlight

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "apps/patchlight/arguments.h"
+#include "formfactor/first_hits.h"
+#include "formfactor/ray_caster.h"
+#include "meshing/read_scene.h"
+
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// A scene with everything a command asks of it.
+struct SceneInput {
+    Scene scene;
+    SceneReport report;
+    std::string sha256;  ///< of the file
+};
+
+/// Reads the scene and the cameras in STEM.view.json beside it when it has none itself. A warning of the report
+/// for each option that names no material. Throws SceneError, UsageError.
+SceneInput load_scene(const SceneArguments& arguments);
+
+/// What the first rays say about the scene, as warnings: mixed winding, a flipped emitter.
+std::vector<std::string> first_hit_warnings(const FirstHits& hits);
+
+/// Power of a surface set, W, three bands together.
+double emitted_power(const Scene& scene);
+double total_area(const Scene& scene);
+
+}  // namespace patchlight
