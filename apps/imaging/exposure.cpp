@@ -26,7 +26,7 @@ double auto_exposure(const Scene& scene, const ViewHits& hits, const Image& radi
     }
     const auto high = lit.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(lit.size() - 1));
     std::nth_element(lit.begin(), high, lit.end());
-    return std::log2(0.6 / *high);
+    return std::log2(0.5 / *high);
 }
 
 double white_at(double exposure)

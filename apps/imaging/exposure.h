@@ -5,7 +5,7 @@
 namespace patchlight {
 
 /// The exposure, in stops, that shows what doesn't emit well: 2^EV times the 90th percentile of its luminance
-/// (B/π in W/(m²·sr), of the pixels of `radiance`) is 0.6 of white. 0 when nothing is lit. `radiance` must have
+/// (B/π in W/(m²·sr), of the pixels of `radiance`) is half of white. 0 when nothing is lit. `radiance` must have
 /// one sample a pixel and belong to `hits`.
 double auto_exposure(const Scene& scene, const ViewHits& hits, const Image& radiance);
 
