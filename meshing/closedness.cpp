@@ -80,7 +80,7 @@ struct Shell {
 class Regions {
 public:
     explicit Regions(const Scene& scene);
-    bool all_fronts_enclosed();
+    bool all_light_enclosed();
 
 private:
     bool encloses(const Shell& shell) const { return shell.volume > 1e-9 * shell.magnitude; }
@@ -174,12 +174,18 @@ bool Regions::is_enclosed(std::uint32_t root)
     return answer;
 }
 
-bool Regions::all_fronts_enclosed()
+bool Regions::all_light_enclosed()
 {
+    const bool lit = std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), [&](const Surface& surface) {
+        return scene_.materials[surface.material.value].emits();
+    });
+    const auto matters = [&](SurfaceId surface) {
+        return surface.valid() && (!lit || scene_.material_of(surface).emits());
+    };
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
         const SceneTriangle& triangle = scene_.triangles[t];
-        if (triangle.front.valid() && !is_enclosed(sides_.root(side_of(t, true)))) return false;
-        if (triangle.back.valid() && !is_enclosed(sides_.root(side_of(t, false)))) return false;
+        if (matters(triangle.front) && !is_enclosed(sides_.root(side_of(t, true)))) return false;
+        if (matters(triangle.back) && !is_enclosed(sides_.root(side_of(t, false)))) return false;
     }
     return true;
 }
@@ -188,7 +194,7 @@ bool Regions::all_fronts_enclosed()
 
 bool is_closed(const Scene& scene)
 {
-    return Regions(scene).all_fronts_enclosed();
+    return Regions(scene).all_light_enclosed();
 }
 
 }  // namespace patchlight

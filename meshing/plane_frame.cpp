@@ -38,7 +38,7 @@ PlaneFrame turned_over(const PlaneFrame& frame)
 {
     PlaneFrame back = frame;
     std::swap(back.u, back.v);
-    back.n = -frame.n;
+    back.n = Vec3{0.0} - frame.n;  // no negative zeros
     return back;
 }
 

@@ -20,8 +20,13 @@ const std::string nameless_material = "default";
 class ObjCollector {
 public:
     ObjCollector(RawScene& raw, const ObjText& text, const MtlLibrary& library)
-        : raw_(raw), text_(text), library_(library)
+        : raw_(raw), text_(text)
     {
+        // Those that no face uses, too: options may name them.
+        for (const auto& [name, material] : library.materials) {
+            materials_[name] = MaterialId(raw.materials.size());
+            raw.materials.push_back(material);
+        }
     }
 
     void read(const std::string& text);
@@ -33,7 +38,6 @@ private:
 
     RawScene& raw_;
     const ObjText& text_;
-    const MtlLibrary& library_;
     std::map<std::string, MaterialId> materials_;
     std::map<std::string, ObjectId> objects_;
     std::string material_name_ = nameless_material;
@@ -95,14 +99,10 @@ MaterialId ObjCollector::material(const std::string& name)
 {
     if (const auto known = materials_.find(name); known != materials_.end()) return known->second;
     const MaterialId id(raw_.materials.size());
-    if (const auto read = library_.materials.find(name); read != library_.materials.end()) {
-        raw_.materials.push_back(read->second);
-    } else {
-        raw_.materials.push_back(Material{.name = name});
-        raw_.warnings.push_back(name == nameless_material
-                                    ? fmt::format("{}: faces without a material have reflectance 0.5", raw_.file_name)
-                                    : fmt::format("material {} is not defined, reflectance 0.5 is used", name));
-    }
+    raw_.materials.push_back(Material{.name = name});
+    raw_.warnings.push_back(name == nameless_material
+                                ? fmt::format("{}: faces without a material have reflectance 0.5", raw_.file_name)
+                                : fmt::format("material {} is not defined, reflectance 0.5 is used", name));
     return materials_[name] = id;
 }
 

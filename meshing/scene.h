@@ -69,7 +69,7 @@ struct Scene {
     Vec3 center{0.0};    ///< metres; file coordinates × unit = vertices + center
     double diameter = 0;  ///< of the bounding box, metres
     double unit = 1;      ///< metres per unit of the file
-    bool closed = false;  ///< no ray that leaves the front of a surface can escape
+    bool closed = false;  ///< no light that surfaces emit can escape
     std::vector<Vec3> vertices;
     std::vector<SceneTriangle> triangles;
     std::vector<Surface> surfaces;

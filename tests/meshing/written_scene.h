@@ -1,0 +1,220 @@
+#pragma once
+
+#include "meshing/read_scene.h"
+#include "meshing/scene_error.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace patchlight::testing {
+
+/// A folder of its own that goes away with the test.
+class TemporaryFolder {
+public:
+    TemporaryFolder()
+    {
+        std::string pattern = (std::filesystem::temp_directory_path() / "patchlight-XXXXXX").string();
+        path_ = mkdtemp(pattern.data());
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const
+    {
+        const std::filesystem::path file = path_ / name;
+        std::filesystem::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary) << bytes;
+        return file;
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline const std::string three_materials = R"(newmtl white
+Kd .7 .7 .7
+newmtl red
+Kd .6 .1 .1
+newmtl lamp
+Kd 0 0 0
+Ke 10 10 10
+)";
+
+/// A polygon of a scene made in code: its corners are its own, nothing is shared.
+struct Polygon {
+    std::vector<Vec3> corners;
+    std::string material = "white";
+    std::string object = "thing";
+};
+
+using Placement = std::function<Vec3(const Vec3&)>;
+
+inline std::string obj_text(const std::vector<Polygon>& polygons, const Placement& place = {})
+{
+    std::string text = "mtllib scene.mtl\n";
+    std::size_t count = 0;
+    for (const Polygon& polygon : polygons) {
+        std::string face = "f";
+        for (const Vec3& corner : polygon.corners) {
+            const Vec3 p = place ? place(corner) : corner;
+            text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+            face += fmt::format(" {}", ++count);
+        }
+        text += fmt::format("o {}\nusemtl {}\n{}\n", polygon.object, polygon.material, face);
+    }
+    return text;
+}
+
+inline LoadedScene read_text(const std::string& obj, const SceneOptions& options = {},
+                             const std::string& mtl = three_materials)
+{
+    const TemporaryFolder folder;
+    folder.write("scene.mtl", mtl);
+    return read_scene(folder.write("scene.obj", obj), options);
+}
+
+inline LoadedScene load(const std::vector<Polygon>& polygons, const SceneOptions& options = {}, const Placement& place = {})
+{
+    return read_text(obj_text(polygons, place), options);
+}
+
+/// The rectangle a, a+u, a+u+v, a+v: front along u × v.
+inline Polygon rectangle(const Vec3& a, const Vec3& u, const Vec3& v, const std::string& material = "white",
+                         const std::string& object = "thing")
+{
+    return {{a, a + u, a + u + v, a + v}, material, object};
+}
+
+/// The six sides of a box, fronts inside or outside.
+inline std::vector<Polygon> box(const Vec3& low, const Vec3& size, bool inside, const std::string& material = "white",
+                                const std::string& object = "box")
+{
+    const Vec3 x{size.x, 0, 0}, y{0, size.y, 0}, z{0, 0, size.z};
+    std::vector<Polygon> sides = {rectangle(low, x, y, material, object),     rectangle(low + z, y, x, material, object),
+                                  rectangle(low, y, z, material, object),     rectangle(low + x, z, y, material, object),
+                                  rectangle(low, z, x, material, object),     rectangle(low + y, x, z, material, object)};
+    if (!inside) {
+        for (Polygon& side : sides) std::reverse(side.corners.begin(), side.corners.end());
+    }
+    return sides;
+}
+
+/// A room of 4 × 4 × 3 m with a 1 × 1 lamp let into its ceiling.
+inline std::vector<Polygon> room_with_lamp()
+{
+    std::vector<Polygon> room = box({0, 0, 0}, {4, 4, 3}, true, "white", "room");
+    room.erase(room.begin() + 1);
+    const auto ceiling = [&](const Vec3& a, const Vec3& u, const Vec3& v) {
+        room.push_back(rectangle(a, u, v, "white", "ceiling"));
+    };
+    ceiling({0, 0, 3}, {0, 4, 0}, {1, 0, 0});
+    ceiling({2, 0, 3}, {0, 4, 0}, {2, 0, 0});
+    ceiling({1, 0, 3}, {0, 1, 0}, {1, 0, 0});
+    ceiling({1, 2, 3}, {0, 2, 0}, {1, 0, 0});
+    room.push_back(rectangle({1, 1, 3}, {0, 1, 0}, {1, 0, 0}, "lamp", "lamp"));
+    return room;
+}
+
+/// A rotation about no axis in particular.
+inline Vec3 rotated(const Vec3& p)
+{
+    const Vec3 axis = glm::normalize(Vec3{0.3, -0.7, 0.55});
+    const double angle = 0.83;
+    return p * std::cos(angle) + glm::cross(axis, p) * std::sin(angle) + axis * glm::dot(axis, p) * (1 - std::cos(angle));
+}
+
+inline double triangle_area(const Scene& scene, const SceneTriangle& t)
+{
+    const Vec3& a = scene.vertices[t.vertices[0]];
+    return 0.5 * glm::length(glm::cross(scene.vertices[t.vertices[1]] - a, scene.vertices[t.vertices[2]] - a));
+}
+
+inline double loop_area(const Scene& scene, const Surface& surface, const std::vector<std::uint32_t>& loop)
+{
+    double twice = 0;
+    const auto at = [&](std::size_t k) { return surface.frame.to_plane(scene.vertices[loop[k]]); };
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) twice += cross2(at(0), at(k), at(k + 1));
+    return 0.5 * twice;
+}
+
+/// What must hold of every scene, whatever was read.
+inline void expect_sound(const LoadedScene& loaded)
+{
+    const Scene& scene = loaded.scene;
+    const double snap = loaded.report.snap_distance;
+    std::vector<double> areas(scene.surfaces.size(), 0.0);
+    for (const SceneTriangle& t : scene.triangles) {
+        ASSERT_TRUE(t.front.valid() || t.back.valid());
+        const Vec3& a = scene.vertices[t.vertices[0]];
+        const Vec3 n = glm::cross(scene.vertices[t.vertices[1]] - a, scene.vertices[t.vertices[2]] - a);
+        for (const SurfaceId side : {t.front, t.back}) {
+            if (!side.valid()) continue;
+            areas.at(side.value) += triangle_area(scene, t);
+            // Slivers thinner than snapping have no normal to speak of.
+            if (glm::length(n) > 10 * snap * scene.diameter) {
+                EXPECT_GT(glm::dot(n, scene.surface(side).frame.n) * (side == t.front ? 1 : -1), 0);
+            }
+        }
+    }
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+        const Surface& surface = scene.surfaces[s];
+        const PlaneFrame& frame = surface.frame;
+        EXPECT_NEAR(glm::length(glm::cross(frame.u, frame.v) - frame.n), 0, 1e-14);
+        EXPECT_NEAR(areas[s], surface.area, 1e-12 * surface.area);
+        ASSERT_FALSE(surface.loops.empty());
+        double area = 0, perimeter = 0;
+        for (std::size_t l = 0; l < surface.loops.size(); ++l) {
+            const auto& loop = surface.loops[l];
+            ASSERT_GE(loop.size(), 3U);
+            const double signed_area = loop_area(scene, surface, loop);
+            EXPECT_EQ(signed_area > 0, l == 0) << "outer loop counter-clockwise, holes clockwise";
+            area += signed_area;
+            for (std::size_t k = 0; k < loop.size(); ++k) {
+                const Vec3& p = scene.vertices.at(loop[k]);
+                EXPECT_LE(std::abs(glm::dot(p - frame.origin, frame.n)), 2.1 * snap);
+                perimeter += glm::distance(p, scene.vertices[loop[(k + 1) % loop.size()]]);
+            }
+        }
+        // Vertices left out of the loops, and seams, may lie the snapping distance off a straight border.
+        EXPECT_NEAR(area, surface.area, 4 * snap * perimeter + 1e-12 * surface.area);
+    }
+}
+
+inline double total_area(const Scene& scene, const std::string& material)
+{
+    double sum = 0;
+    for (const Surface& surface : scene.surfaces) {
+        if (scene.materials[surface.material.value].name == material) sum += surface.area;
+    }
+    return sum;
+}
+
+inline std::size_t count_of(const Scene& scene, const std::string& material)
+{
+    std::size_t count = 0;
+    for (const Surface& surface : scene.surfaces) count += scene.materials[surface.material.value].name == material;
+    return count;
+}
+
+/// Runs `read`, which must throw; gives "code: message".
+inline std::string error_of(const std::function<void()>& read)
+{
+    try {
+        read();
+    } catch (const SceneError& error) {
+        return error.code() + ": " + error.what();
+    }
+    return "no error";
+}
+
+}  // namespace patchlight::testing
