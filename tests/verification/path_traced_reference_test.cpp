@@ -94,6 +94,28 @@ TEST(PathTracedReference, DirectLightMatchesTheKnownFactors)
     }
 }
 
+TEST(PathTracedReference, DirectLightMatchesTheClippedLight)
+{
+    const PathOptions options{.replicates = 32, .light_strata = 12, .direction_strata = 1};
+    for (const char* name : {"narrow-penumbra", "wide-penumbra", "wall-on-floor"}) {
+        const ReferenceScene scene = read_reference_scene(std::string(PATCHLIGHT_DATA "/scenes/") + name + ".obj");
+        const Loop light = loops_of(scene, {"light"}).at(0);
+        const std::vector<Loop> blocker{loops_of(scene, {"blocker"}).at(0)};  // one of its two sides: it is thin
+        const std::vector<SurfacePoint> points = sample_points(scene, 40, 7);
+        std::size_t shaded = 0;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Vec3& p = points[k].position;
+            const double factor = lit_factor(p, {0, 0, 1}, light, blocker);
+            shaded += factor < lit_factor(p, {0, 0, 1}, light, {}) ? 1 : 0;
+            const Measured direct = measure_irradiance(scene, p, {0, 0, 1}, options, k).direct;
+            const double E = 10 * std::numbers::pi;
+            // Five standard errors of 32 replicates: a false alarm in about 300 such tests, and the seed is fixed.
+            EXPECT_NEAR(direct.mean.g, factor * E, 5 * direct.standard_error.g + 1e-9 * E) << name << " " << p.x;
+        }
+        EXPECT_GE(shaded, 2U) << name;
+    }
+}
+
 TEST(PathTracedReference, FurnaceIsUniform)
 {
     const ReferenceScene scene = read_reference_scene(PATCHLIGHT_DATA "/scenes/furnace.obj");
