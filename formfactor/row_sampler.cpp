@@ -90,6 +90,9 @@ std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column
     const std::array<std::array<Vec3, 3>, 1> triangle{{{mesh_.position(c[0]), mesh_.position(c[1]), mesh_.position(c[2])}}};
     const Source source(surface, scene_.surface(surface).frame.n, triangle);
     const HemisphereSet& origins = sets_.front();
+    // An emitter's shadows are what is seen; those of the many other shooters blur each other.
+    const bool emits = std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.surface() == surface; });
+    const int shadow_rays = emits ? options_.shadow_rays : std::min(4, options_.shadow_rays);
     const std::size_t traced = for_each_row<RowScratch>(mesh_.patch_count(), monitor, [&](std::size_t j, RowScratch& scratch) {
         const PatchId receiver(j);
         column[j] = 0;
@@ -106,7 +109,7 @@ std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column
             return;
         }
         RandomNumbers random(options_.seed, shadow_stream ^ (static_cast<std::uint64_t>(shooter.value) << 32) ^ j);
-        column[j] = visible_factor(caster_, source, scratch.receivers, options_.shadow_rays, random, scratch.shadow);
+        column[j] = visible_factor(caster_, source, scratch.receivers, shadow_rays, random, scratch.shadow);
         scratch.traced += scratch.shadow.blocked.size();
     });
     return traced + own.traced;
@@ -166,7 +169,8 @@ void RowSampler::swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch
         scratch.small.emplace_back(s, factor);
         unoccluded += factor;
     }
-    const double row_sum = scratch.row.raw_sum;
+    // The row with what met nothing or a back: swapping keeps all of it.
+    const double row_sum = scratch.row.raw_sum + scratch.row.escaped + scratch.row.backs;
     // Judged on unoccluded factors: these don't depend on chance, so that neighbouring points decide alike.
     if (scratch.small.empty() || unoccluded >= 0.5 * row_sum) return;
 
@@ -200,6 +204,8 @@ void RowSampler::swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch
         const std::uint32_t p = scratch.touched[i];
         if (scratch.is_swapped[mesh_.surface(PatchId(p)).value] == 0) scratch.weight[p] *= keep;
     }
+    scratch.row.escaped *= static_cast<double>(keep);
+    scratch.row.backs *= static_cast<double>(keep);
     for (const auto& [s, factor] : scratch.small) scratch.is_swapped[sources_[s].surface().value] = 0;
 }
 

@@ -24,8 +24,8 @@ struct RowScratch {
 };
 
 /// Rows of form factors by rays over the hemisphere, with small sources seen by Lambert's formula. What swapped
-/// sources gain or lose against their own hits is taken in proportion from the other hits, so that the measured row
-/// sum stays. Keeps references to all it is made of.
+/// sources gain or lose against their own hits is taken in proportion from all other rays, those that met nothing
+/// included, so that the sum over everything stays. Keeps references to all it is made of.
 class RowSampler {
 public:
     /// `sources`: the surfaces that may be seen by Lambert's formula (emitters).

@@ -118,7 +118,7 @@ Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPla
         for_each_surface(scene, [&](SurfaceId s) {
             // Without a target there is nothing to do, and the old angles are as good as the input permits.
             const double min_angle = touched[s.value] != 0 ? options.min_angle : 0;
-            pieces[s.value] = bisect_surface(scene, s, mesh, locator, target, min_angle);
+            pieces[s.value] = refine_surface(scene, s, mesh, locator, target, min_angle);
         });
         const std::size_t found = count(pieces);
         if (options.max_elements == 0 || found <= options.max_elements || honoured == 0) break;

@@ -49,10 +49,9 @@ struct Refinement {
 /// own edges permit). Surfaces are meshed independently, on all threads; the result does not depend on their number.
 PatchMesh triangulate(const Scene& scene, const MeshingOptions& options);
 
-/// Splits what the plan asks for: longest edges are bisected in the surface's constrained Delaunay
-/// triangulation, neighbours as far as the shape bound needs it. Old vertices stay. An empty plan gives the same
-/// mesh. When the budget doesn't reach, the plan's first splits are honoured.
-/// Source: Rivara's Lepp–Delaunay midpoint insertion [Rivara97].
+/// Refines what the plan asks for, and its neighbours as far as the shape bound needs it, by Delaunay refinement of
+/// each surface. Old vertices stay. An empty plan gives the same mesh. When the budget doesn't reach, only the
+/// plan's first splits are honoured.
 Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
 
 /// Which old patches each new one covers, by clipping them against each other in their surface's plane.

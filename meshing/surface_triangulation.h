@@ -21,10 +21,11 @@ struct SurfaceTriangulation {
 /// narrower than a sixtieth of `max_edge` has no angle bound: it would cost as many triangles as it is longer than wide.
 SurfaceTriangulation triangulate_surface(const Scene& scene, SurfaceId surface, double max_edge, double min_angle);
 
-/// Bisects the longest edges of patches until none is longer than what `target_edge` asks where the patch lies
-/// (one value per patch of `mesh`, m), keeping the triangulation constrained Delaunay and, where the input's own
-/// angles permit, its angles at `min_angle` (degrees). Old vertices stay; nothing to do = nothing changed.
-SurfaceTriangulation bisect_surface(const Scene& scene, SurfaceId surface, const PatchMesh& mesh,
+/// Delaunay refinement: inserts circumcentres (or middles of border edges that lie in the way) until no patch has a
+/// longer edge than `target_edge` asks where it lies (one value per patch of `mesh`, m), and, where the input's own
+/// angles permit, no angle below `min_angle` (degrees). Old vertices stay; nothing to do = nothing changed.
+/// [Chew93], [Ruppert95].
+SurfaceTriangulation refine_surface(const Scene& scene, SurfaceId surface, const PatchMesh& mesh,
                                     const PatchLocator& locator, std::span<const double> target_edge, double min_angle);
 
 }  // namespace patchlight

@@ -6,38 +6,118 @@ namespace patchlight {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+/// What one solve left: how it went, where the light went, and the linear reconstruction.
+struct Solved {
+    SolveReport report;
+    EnergyBalance energy;
+    VertexRadiosity vertex_B;
+};
 
-/// Runs a stage, adds its wall time to `seconds`, and passes its progress on.
-template <class Work>
-auto timed(double& seconds, const AdaptiveObservers& observers, Progress progress, const Work& work)
-{
-    if (observers.stop.stop_requested()) throw Interrupted();
-    WorkMonitor monitor{observers.stop, {}};
-    if (observers.on_progress) {
-        observers.on_progress(progress);
-        monitor.tell = [&](double fraction) {
-            progress.fraction = fraction;
-            observers.on_progress(progress);
-        };
-    }
-    const auto begin = Clock::now();
-    auto result = work(monitor);
-    seconds += std::chrono::duration<double>(Clock::now() - begin).count();
-    return result;
-}
-
-/// Shooting computes columns on demand; gathering assembles all rows.
-SolveReport shoot(const Exchange& exchange, const RadiositySystem& system, Radiosity& B, const AdaptiveOptions& options,
-                  const SolveOptions& solver, const WorkMonitor& monitor)
+SolveReport shoot(const Exchange& exchange, const RadiositySystem& system, Radiosity& B, const SolveOptions& options,
+                  const FormFactorOptions& sampling, const WorkMonitor& monitor)
 {
     const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
-                             options.form_factors);
+                             sampling);
     const ColumnSource column_of = [&](PatchId shooter, std::span<double> column) {
         return sampler.shooter_column(shooter, column, {monitor.stop, {}});
     };
-    return solve_shooting(system, column_of, B, solver, monitor);
+    return solve_shooting(system, column_of, B, options, monitor);
 }
+
+/// The stages of one cycle on one mesh: runs, times and reports each.
+class Cycle {
+    template <class Work>
+    auto stage(std::string_view name, double& spent, const Work& work)
+    {
+        if (observers_.stop.stop_requested()) throw Interrupted();
+        WorkMonitor monitor{observers_.stop, {}};
+        Progress progress{name, number_, 0, exchange_.mesh.patch_count()};
+        if (observers_.on_progress)
+            monitor.tell = [this, progress](double fraction) mutable {
+                progress.fraction = fraction;
+                observers_.on_progress(progress);
+            };
+        if (monitor.tell) monitor.tell(0);
+        const auto begin = std::chrono::steady_clock::now();
+        auto result = work(monitor);
+        spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        return result;
+    }
+
+public:
+    Cycle(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, int number, const AdaptiveOptions& options,
+          const AdaptiveObservers& observers)
+        : locator_(mesh), exchange_{scene, caster, mesh, locator_}, number_(number), options_(options), observers_(observers)
+    {
+    }
+
+    /// First shooting on the coarse mesh; later gathering a little, from what the coarser mesh knew.
+    Solved solve_roughly(Radiosity& B)
+    {
+        FormFactorOptions coarse = options_.form_factors;
+        coarse.rays = std::max(64, coarse.rays / 4);
+        return number_ == 0 ? solve(B, options_.rough, coarse)
+                            : solve(B, {.solver = Solver::gauss_seidel, .tolerance = 0.02}, coarse);
+    }
+
+    /// The final solve: all rays, the tight tolerance, light gathered at the vertices.
+    Solved solve_tightly(Radiosity& B)
+    {
+        Solved solved = solve(B, options_.final, options_.form_factors);
+        Reconstruction linear = stage("gather", seconds.gather, [&](const WorkMonitor& monitor) {
+            return reconstruct(exchange_, B, options_.gather, monitor);
+        });
+        rays += linear.rays;
+        solved.vertex_B = std::move(linear.B);
+        return solved;
+    }
+
+    Evaluation evaluate(const Radiosity& B)
+    {
+        return stage("estimate", seconds.estimate, [&](const WorkMonitor& monitor) {
+            Evaluation evaluation = patchlight::evaluate(exchange_, B, options_.estimate, options_.gather, monitor);
+            rays += evaluation.rays;
+            return evaluation;
+        });
+    }
+
+    Refinement refine(const RefinementPlan& plan)
+    {
+        MeshingOptions meshing = options_.meshing;
+        meshing.max_elements = options_.max_elements;
+        return stage("mesh", seconds.mesh, [&](const WorkMonitor&) {
+            return patchlight::refine(exchange_.scene, exchange_.mesh, plan, meshing);
+        });
+    }
+
+    StageSeconds seconds;
+    std::size_t rays = 0;
+
+private:
+    Solved solve(Radiosity& B, const SolveOptions& options, const FormFactorOptions& sampling)
+    {
+        const bool shooting = options.solver == Solver::progressive;
+        // Shooting computes columns on demand; the tight solve assembles all the same, for the energy balance.
+        const bool rows = !shooting || &options == &options_.final;
+        const RadiositySystem system = stage("assemble", seconds.assemble, [&](const WorkMonitor& monitor) {
+            return rows ? assemble(exchange_, sampling, monitor) : unassembled(exchange_.scene, exchange_.mesh);
+        });
+        Solved solved;
+        solved.report = stage("solve", seconds.solve, [&](const WorkMonitor& monitor) {
+            return shooting ? shoot(exchange_, system, B, options, sampling, monitor)
+                            : solve_gathering(system, B, options, monitor);
+        });
+        if (rows) solved.energy = energy_balance(system, B);
+        rays += system.F.rays + solved.report.rays;
+        return solved;
+    }
+
+    PatchLocator locator_;
+    Exchange exchange_;
+    int number_;
+    const AdaptiveOptions& options_;
+    const AdaptiveObservers& observers_;
+};
 
 bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const RefinementPlan& plan, int cycle,
               const AdaptiveOptions& options)
@@ -45,7 +125,7 @@ bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const Refinemen
     const bool good = options.target_error > 0 && error.relative <= options.target_error;
     // Within a fiftieth of the budget a further cycle would cost more than it buys.
     const bool full = options.max_elements > 0 && 50 * mesh.patch_count() >= 49 * options.max_elements;
-    return good || full || plan.empty() || options.refine == Refine::none || cycle >= options.iterations;
+    return options.refine == Refine::none || good || full || plan.empty() || cycle >= options.iterations;
 }
 
 Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
@@ -61,59 +141,35 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                                   std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
-    StageSeconds seconds;
-    MeshingOptions refining = options.meshing;
-    refining.max_elements = options.max_elements;
-    int cycle = start ? start->cycle : 0;
-    PatchMesh mesh = start ? std::move(start->mesh) : timed(seconds.mesh, observers, {"mesh"}, [&](const WorkMonitor&) {
-        return triangulate(scene, options.meshing);
-    });
+    PatchMesh mesh = start ? std::move(start->mesh) : triangulate(scene, options.meshing);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
-    std::optional<ErrorEstimate> known = start ? std::optional(std::move(start->error)) : std::nullopt;
 
-    for (;; ++cycle) {
-        if (!known) {
-            const PatchLocator locator(mesh);
-            const Exchange exchange{scene, caster, mesh, locator};
-            const auto progress = [&](std::string_view stage) { return Progress{stage, cycle, 0, mesh.patch_count()}; };
-            const bool rough = cycle == 0 && options.refine != Refine::none;
-            const SolveOptions& solver = rough ? options.rough : options.final;
+    for (int cycle = start ? start->cycle : 0;; ++cycle) {
+        Cycle work(scene, caster, mesh, cycle, options, observers);
+        RefinementPlan plan;
+        if (start) {  // this cycle was observed by the run that is continued
+            plan = mark(scene, mesh, start->error, options.mark);
+            start.reset();
+        } else {
+            Solved solved = options.refine == Refine::none ? work.solve_tightly(B) : work.solve_roughly(B);
+            Evaluation evaluation = work.evaluate(B);
+            plan = mark(scene, mesh, evaluation.error, options.mark);
+            const bool last = finished(mesh, evaluation.error, plan, cycle, options);
+            if (last && options.refine != Refine::none) solved = work.solve_tightly(B);
 
-            const RadiositySystem system = timed(seconds.assemble, observers, progress("assemble"), [&](const auto& monitor) {
-                return rough ? unassembled(scene, mesh) : assemble(exchange, options.form_factors, monitor);
-            });
-            SolveReport solved = timed(seconds.solve, observers, progress("solve"), [&](const auto& monitor) {
-                return solver.solver == Solver::progressive ? shoot(exchange, system, B, options, solver, monitor)
-                                                            : solve_gathering(system, B, solver, monitor);
-            });
-            Reconstruction linear = timed(seconds.gather, observers, progress("gather"), [&](const auto& monitor) {
-                return reconstruct(exchange, B, options.gather, monitor);
-            });
-            ErrorEstimate error = timed(seconds.estimate, observers, progress("estimate"), [&](const auto& monitor) {
-                return estimate(exchange, B, linear.B, options.estimate, options.gather, monitor);
-            });
-            const EnergyBalance energy = rough ? EnergyBalance{} : energy_balance(system, B);
-            const RefinementPlan plan = mark(scene, mesh, error, options.mark);
-            const bool last = finished(mesh, error, plan, cycle, options);
+            const VertexRadiosity& vertex_B = last ? solved.vertex_B : evaluation.vertex_B;
             if (observers.on_step)
-                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, linear.B, solved, error, energy,
-                                   last ? 0 : plan.splits.size(),
-                                   system.F.rays + solved.rays + linear.rays + error.rays, seconds});
+                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.report,
+                                   evaluation.error, solved.energy, last ? 0 : plan.splits.size(), work.rays, work.seconds});
             if (last) {
-                const bool met = options.target_error <= 0 || error.relative <= options.target_error;
-                const bool converged = solved.converged && met;
-                return {std::move(mesh), std::move(B), std::move(linear.B), std::move(error), energy, std::move(solved),
-                        converged};
+                const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
+                return {std::move(mesh), std::move(B), std::move(solved.vertex_B), std::move(evaluation.error),
+                        solved.energy, solved.report, solved.report.converged && met};
             }
-            known = std::move(error);
         }
-        seconds = {};
-        Refinement refined = timed(seconds.mesh, observers, {"mesh", cycle, 0, mesh.patch_count()}, [&](const auto&) {
-            return refine(scene, mesh, mark(scene, mesh, *known, options.mark), refining);
-        });
+        Refinement refined = work.refine(plan);
         B = prolong(refined.mesh, B, refined.transfer);
         mesh = std::move(refined.mesh);
-        known.reset();
     }
 }
 

@@ -20,13 +20,13 @@ enum class Refine { none, intensity };
 struct AdaptiveOptions {
     MeshingOptions meshing;         ///< of the first, uniform mesh (with Refine::none: the only one)
     FormFactorOptions form_factors;
-    SolveOptions rough{.solver = Solver::progressive, .tolerance = 0.1, .max_sweeps = 1, .ambient = true};
-    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};  ///< from the second cycle on
+    SolveOptions rough{.solver = Solver::progressive, .tolerance = 0.5, .max_sweeps = 1, .ambient = true};  ///< before the last cycle
+    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};  ///< on the last mesh
     GatherOptions gather;
     EstimateOptions estimate;
     MarkOptions mark;
     Refine refine = Refine::intensity;
-    int iterations = 16;              ///< refinements at most, ≥ 1
+    int iterations = 24;              ///< refinements at most, ≥ 1
     double target_error = 0;          ///< stop when the estimated error is below; 0 = go on to the budget
     std::size_t max_elements = 8000;  ///< budget of patches
 };
@@ -44,7 +44,7 @@ struct AdaptiveStep {
     Stage stage = Stage::rough;
     const PatchMesh& mesh;
     const Radiosity& B;                ///< per patch
-    const VertexRadiosity& vertex_B;   ///< the linear reconstruction
+    const VertexRadiosity& vertex_B;   ///< the linear reconstruction; before the last cycle from the estimate's few rays
     const SolveReport& solved;
     const ErrorEstimate& error;
     const EnergyBalance& energy;
@@ -80,6 +80,7 @@ struct AdaptiveSolution {
 };
 
 /// THE loop: uniform mesh → rough radiosity → evaluation → intensity-adaptive mesh → … → final radiosity.
+/// Cycles before the last solve with a quarter of the rays; the last mesh is solved again with all of them.
 /// The answer depends on scene and options only, not on the number of threads.
 /// Throws Interrupted when observers.stop is requested; the steps already observed are whole.
 AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,

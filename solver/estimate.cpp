@@ -44,15 +44,8 @@ ExtraPoints extra_points(const Exchange& exchange)
     return extra;
 }
 
-PatchField<double> residual(const Exchange& exchange, const Radiosity& B, const EstimateOptions& options,
-                            GatherOptions gather, const WorkMonitor& monitor, std::size_t& rays)
+PatchField<double> residual(const Exchange& exchange, const ExtraPoints& extra, const std::vector<Rgb>& H)
 {
-    gather.rays = options.rays;
-    const ExtraPoints extra = extra_points(exchange);
-    GatheredLight light = gather_irradiance(exchange, B, extra.points, gather, monitor);
-    share_irradiance(exchange, gather.crease_angle, light.irradiance);
-    rays = light.rays;
-    const auto& H = light.irradiance;
     PatchField<double> eta(exchange.mesh.patch_count(), 0.0);
     for (const PatchId p : exchange.mesh.patches()) {
         const Rgb rho = exchange.scene.material_of(exchange.mesh.surface(p)).reflectance;
@@ -96,19 +89,30 @@ double reflected_norm(const Scene& scene, const PatchMesh& mesh, const VertexRad
     return std::sqrt(sum);
 }
 
-ErrorEstimate estimate(const Exchange& exchange, const Radiosity& B, const VertexRadiosity& vertex_B,
-                       const EstimateOptions& options, const GatherOptions& gather, const WorkMonitor& monitor)
+Evaluation evaluate(const Exchange& exchange, const Radiosity& B, const EstimateOptions& options,
+                    const GatherOptions& gather, const WorkMonitor& monitor)
 {
-    ErrorEstimate error;
-    error.eta = options.indicator == Indicator::residual
-        ? residual(exchange, B, options, gather, monitor, error.rays)
-        : vertex_difference(exchange, vertex_B);
+    GatherOptions sampling = gather;
+    sampling.rays = options.rays;
+    const bool by_residual = options.indicator == Indicator::residual;
+    ExtraPoints extra;
+    if (by_residual) extra = extra_points(exchange);
+    else extra.points = vertex_points(exchange);
+    GatheredLight light = gather_irradiance(exchange, B, extra.points, sampling, monitor);
+    share_irradiance(exchange, gather.crease_angle, light.irradiance);
+
+    Evaluation evaluation;
+    evaluation.rays = light.rays;
+    evaluation.vertex_B = linear_radiosity(exchange, light.irradiance);
+    ErrorEstimate& error = evaluation.error;
+    error.eta = by_residual ? residual(exchange, extra, light.irradiance)
+                            : vertex_difference(exchange, evaluation.vertex_B);
     double sum = 0;
     for (const double eta : error.eta.values()) sum += eta * eta;
     error.total = std::sqrt(sum);
-    const double norm = reflected_norm(exchange.scene, exchange.mesh, vertex_B);
+    const double norm = reflected_norm(exchange.scene, exchange.mesh, evaluation.vertex_B);
     error.relative = error.total == 0 ? 0 : error.total / norm;
-    return error;
+    return evaluation;
 }
 
 RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error, const MarkOptions& options)
@@ -132,8 +136,14 @@ RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstima
             : static_cast<double>(plan.splits.size()) >= options.share * static_cast<double>(mesh.patch_count());
         if (enough) break;
         const PatchId p(i);
-        plan.splits.push_back({p, 0.5 * mesh.longest_edge(p)});
+        plan.splits.push_back({p, 0});
         held += error.eta[p] * error.eta[p];
+    }
+    for (auto& split : plan.splits) {
+        const double excess = error.eta[split.patch] / error.eta[plan.splits.back().patch];
+        const double further = std::floor(std::log2(excess) / 2);
+        // A little less than the longest edge is one bisection; each further one takes a factor √2.
+        split.target_edge = 0.995 * mesh.longest_edge(split.patch) * std::exp2(-0.5 * further);
     }
     return plan;
 }

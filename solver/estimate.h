@@ -12,7 +12,7 @@ enum class Indicator {
 
 struct EstimateOptions {
     Indicator indicator = Indicator::residual;
-    int rays = 128;  ///< over the hemisphere at each extra point, 16 … 65536
+    int rays = 128;  ///< over the hemisphere at each point, 16 … 65536
 };
 
 /// Per patch, ≥ 0. It is an indicator, not a bound: it sees what the mesh can't follow, not what the rays missed.
@@ -20,18 +20,24 @@ struct ErrorEstimate {
     PatchField<double> eta;  ///< √∫|B̃ − B|² dA over the patch, W/m²·m, three bands together
     double total = 0;        ///< √Σ η²
     double relative = 0;     ///< total / √∫|B − E|² dA over all reflecting surface; 0/0 = 0
-    std::size_t rays = 0;    ///< what it took
 };
 
 /// √∫|B − E|² dA of the linear reconstruction over all reflecting surface, W/m²·m.
 double reflected_norm(const Scene& scene, const PatchMesh& mesh, const VertexRadiosity& B);
 
+/// What evaluating a solution finds: the error of its mesh, and the linear reconstruction it was found with.
+struct Evaluation {
+    ErrorEstimate error;
+    VertexRadiosity vertex_B;  ///< gathered with the estimate's rays
+    std::size_t rays = 0;
+};
+
 /// Residual: light is gathered at corners, edge midpoints and centroid of each patch with the same directions; what
-/// differs there from linear interpolation is integrated with Radau's rule of degree 3 (2/15 for each midpoint,
-/// 9/20 for the centroid, times the area). Vertex difference: |B_max − B_min| over the corners × √A.
+/// differs there from linear interpolation is integrated with a rule of degree 3 (2/15 for each midpoint, 9/20 for
+/// the centroid, times the area; the corners' error is 0). Vertex difference: |B_max − B_min| over the corners × √A.
 /// Patches that reflect nothing have 0. Throws Interrupted.
-ErrorEstimate estimate(const Exchange& exchange, const Radiosity& B, const VertexRadiosity& vertex_B,
-                       const EstimateOptions& options, const GatherOptions& gather, const WorkMonitor& monitor = {});
+Evaluation evaluate(const Exchange& exchange, const Radiosity& B, const EstimateOptions& options,
+                    const GatherOptions& gather, const WorkMonitor& monitor = {});
 
 enum class Marking {
     doerfler,       ///< the fewest patches that hold a share of Σ η²
@@ -40,11 +46,14 @@ enum class Marking {
 
 struct MarkOptions {
     Marking marking = Marking::doerfler;
-    double share = 0.7;      ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
+    double share = 0.75;     ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
     double smallest = 1e-4;  ///< patches whose longest edge is below this × diameter are left alone
 };
 
-/// The patches to split next, the worst first: their longest edges are to be halved. Touches nothing.
+/// The patches to split next, the worst first. The least of them gets one bisection (target: a little less than its
+/// longest edge), one with 4 times its η two, and so on: two bisections quarter a patch, and η ∝ h² at least
+/// falls as much. Small steps make good meshes: halving every marked edge instead costs 1.8 times the elements
+/// at equal error on the narrow penumbra. Touches nothing.
 RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error, const MarkOptions& options);
 
 }  // namespace patchlight

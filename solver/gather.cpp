@@ -84,17 +84,22 @@ void share_irradiance(const Exchange& exchange, double crease_angle, std::vector
     }
 }
 
+VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> irradiance)
+{
+    VertexRadiosity B(exchange.mesh.vertex_count());
+    for (const VertexId v : exchange.mesh.vertices()) {
+        const Material& material = exchange.scene.material_of(exchange.mesh.surface(v));
+        B[v] = material.emission + material.reflectance * irradiance[v.value];
+    }
+    return B;
+}
+
 Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
                            const WorkMonitor& monitor)
 {
     GatheredLight gathered = gather_irradiance(exchange, B, vertex_points(exchange), options, monitor);
     share_irradiance(exchange, options.crease_angle, gathered.irradiance);
-    Reconstruction result{VertexRadiosity(exchange.mesh.vertex_count()), gathered.rays};
-    for (const VertexId v : exchange.mesh.vertices()) {
-        const Material& material = exchange.scene.material_of(exchange.mesh.surface(v));
-        result.B[v] = material.emission + material.reflectance * gathered.irradiance[v.value];
-    }
-    return result;
+    return {linear_radiosity(exchange, gathered.irradiance), gathered.rays};
 }
 
 }  // namespace patchlight

@@ -51,6 +51,9 @@ struct Reconstruction {
 Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
                            const WorkMonitor& monitor = {});
 
+/// B = E + ρ H at every vertex; `irradiance` begins with one value a vertex.
+VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> irradiance);
+
 /// Averages irradiance over vertices at one place whose surfaces have one material and normals within the crease
 /// angle of the vertex's own.
 void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance);

@@ -94,12 +94,7 @@ std::vector<VertexRadiosity> progressive_snapshots(const Scene& scene, const Ray
         if (std::find(shots.begin(), shots.end(), shot) == shots.end()) continue;
         auto shared = irradiance;
         share_irradiance(exchange, options.crease_angle, shared);
-        VertexRadiosity B(mesh.vertex_count());
-        for (const VertexId v : mesh.vertices()) {
-            const Material& material = scene.material_of(mesh.surface(v));
-            B[v] = material.emission + material.reflectance * shared[v.value];
-        }
-        pictures.push_back(std::move(B));
+        pictures.push_back(linear_radiosity(exchange, shared));
     }
     return pictures;
 }

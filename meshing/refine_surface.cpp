@@ -19,9 +19,9 @@ using FaceHandle = OpenMesh::FaceHandle;
 using HalfedgeHandle = OpenMesh::HalfedgeHandle;
 
 /// The triangulation of one surface while it is being refined.
-class Bisection {
+class SurfaceRefinement {
 public:
-    Bisection(const PlaneFrame& frame, SurfaceId surface, const PatchMesh& mesh, const PatchLocator& locator,
+    SurfaceRefinement(const PlaneFrame& frame, SurfaceId surface, const PatchMesh& mesh, const PatchLocator& locator,
               std::span<const double> target_edge, double min_angle)
         : frame_(frame), surface_(surface), locator_(locator), target_edge_(target_edge),
           cosine_bound_(std::cos(min_angle * std::numbers::pi / 180))
@@ -42,7 +42,7 @@ public:
         while (!work_.empty()) {
             const FaceHandle face = work_.front();
             work_.pop_front();
-            while (too_long(face)) split_terminal_edge(face);
+            while (too_long(face)) insert_circumcentre(face);
         }
         // Angles come second, and never make more points than sizes did: an angle that the input forces could
         // ask for ever.
@@ -51,7 +51,7 @@ public:
         while (!work_.empty() && left > 0) {
             const FaceHandle face = work_.front();
             work_.pop_front();
-            for (int tries = 0; tries < 4 && left > 0 && too_sharp(face); ++tries, --left) split_terminal_edge(face);
+            for (int tries = 0; tries < 4 && left > 0 && too_sharp(face); ++tries, --left) insert_circumcentre(face);
         }
     }
 
@@ -128,20 +128,55 @@ private:
 
     bool on_border(HalfedgeHandle h) const { return mesh_.is_boundary(mesh_.edge_handle(h)); }
 
-    /// Follows longest edges from the face to the one that both its patches call longest, and bisects it.
-    void split_terminal_edge(FaceHandle face)
+    /// Puts a vertex into the circumcentre of a face, or, where a border lies in between or too near, into the
+    /// middle of that border's edge (Ruppert's rule).
+    void insert_circumcentre(FaceHandle face)
     {
-        HalfedgeHandle h = longest(face);
-        while (!on_border(h)) {
-            const HalfedgeHandle across = longest(mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
-            if (mesh_.edge_handle(across) == mesh_.edge_handle(h)) break;
-            h = across;
+        const auto c = corners(face);
+        const Vec2 a = at(c[1]) - at(c[0]), b = at(c[2]) - at(c[0]);
+        const double aa = glm::dot(a, a), bb = glm::dot(b, b), twice = 2 * (a.x * b.y - a.y * b.x);
+        const Vec2 centre = at(c[0]) + Vec2(b.y * aa - a.y * bb, a.x * bb - b.x * aa) / twice;
+
+        const auto [target, blocking] = walk(face, centre);
+        if (blocking.is_valid()) return split_edge(blocking);
+        HalfedgeHandle h = mesh_.halfedge_handle(target);
+        for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h)) {
+            const Vec2 u = at(mesh_.from_vertex_handle(h)) - centre, v = at(mesh_.to_vertex_handle(h)) - centre;
+            if (on_border(h) && glm::dot(u, v) <= 0) return split_edge(h);
+            // On an edge it would leave a triangle without area.
+            if (u.x * v.y - u.y * v.x < 1e-3 * length2(h)) return split_edge(longest(target));
         }
-        const VertexHandle a = mesh_.from_vertex_handle(h), b = mesh_.to_vertex_handle(h);
-        const VertexHandle middle = add_vertex(0.5 * (mesh_.point(a) + mesh_.point(b)));
+        const VertexHandle vertex = add_vertex(frame_.lift(centre));
+        mesh_.split(target, vertex);
+        settle(vertex);
+    }
+
+    /// The face that contains q, or the border edge that stops the way to it.
+    std::pair<FaceHandle, HalfedgeHandle> walk(FaceHandle face, const Vec2& q) const
+    {
+        HalfedgeHandle entered;
+        for (;;) {
+            HalfedgeHandle h = mesh_.halfedge_handle(face), way_out;
+            for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h))
+                if (h != entered && cross2(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), q) < 0) way_out = h;
+            if (!way_out.is_valid() || on_border(way_out)) return {face, way_out};
+            entered = mesh_.opposite_halfedge_handle(way_out);
+            face = mesh_.face_handle(entered);
+        }
+    }
+
+    void split_edge(HalfedgeHandle h)
+    {
+        const VertexHandle middle =
+            add_vertex(0.5 * (mesh_.point(mesh_.from_vertex_handle(h)) + mesh_.point(mesh_.to_vertex_handle(h))));
         mesh_.split(mesh_.edge_handle(h), middle);
-        restore_delaunay(middle);
-        for (const auto around : mesh_.vf_range(middle)) work_.push_back(around);
+        settle(middle);
+    }
+
+    void settle(VertexHandle vertex)
+    {
+        restore_delaunay(vertex);
+        for (const auto around : mesh_.vf_range(vertex)) work_.push_back(around);
     }
 
     /// Lawson's flips outward from a new vertex.
@@ -194,12 +229,12 @@ private:
 
 }  // namespace
 
-SurfaceTriangulation bisect_surface(const Scene& scene, SurfaceId surface, const PatchMesh& mesh,
+SurfaceTriangulation refine_surface(const Scene& scene, SurfaceId surface, const PatchMesh& mesh,
                                     const PatchLocator& locator, std::span<const double> target_edge, double min_angle)
 {
-    Bisection bisection(scene.surface(surface).frame, surface, mesh, locator, target_edge, min_angle);
-    bisection.refine();
-    return bisection.result();
+    SurfaceRefinement refinement(scene.surface(surface).frame, surface, mesh, locator, target_edge, min_angle);
+    refinement.refine();
+    return refinement.result();
 }
 
 }  // namespace patchlight
