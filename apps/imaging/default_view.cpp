@@ -1,7 +1,9 @@
 #include "apps/imaging/picture.h"
 #include "apps/imaging/view_rays.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -38,11 +40,50 @@ View looking(const Vec3& from, const Vec3& to, double fov)
     return view;
 }
 
-std::vector<View> candidates(const Scene& scene)
+/// Before the middles of the largest triangles' fronts, a tenth of the way to what they see, looking past the
+/// scene's middle: always inside a closed scene, however it is turned.
+std::vector<View> before_surfaces(const Scene& scene, const RayCaster& caster)
+{
+    std::vector<const SceneTriangle*> largest;
+    for (const SceneTriangle& t : scene.triangles) {
+        if (t.front.valid()) {
+            largest.push_back(&t);
+        }
+    }
+    const auto corner = [&](const SceneTriangle& t, int k) { return scene.vertices[t.vertices[k]]; };
+    const auto size = [&](const SceneTriangle* t) {
+        return glm::length(glm::cross(corner(*t, 1) - corner(*t, 0), corner(*t, 2) - corner(*t, 0)));
+    };
+    std::stable_sort(largest.begin(), largest.end(), [&](const auto* a, const auto* b) { return size(a) > size(b); });
+    largest.resize(std::min<std::size_t>(largest.size(), 16));
+    RayBatch rays;
+    HitBatch hits;
+    std::vector<View> views;
+    for (const SceneTriangle* t : largest) {
+        const Vec3 middle = (corner(*t, 0) + corner(*t, 1) + corner(*t, 2)) / 3.0;
+        const Vec3& n = scene.surface(t->front).frame.n;
+        rays.resize(1);
+        rays.set(0, caster.leave(middle, n), n, std::numeric_limits<float>::infinity());
+        caster.closest(rays, hits);
+        if (hits.surface[0] >= HitBatch::black_back) {
+            continue;
+        }
+        const Vec2 q{static_cast<double>(hits.x[0]), static_cast<double>(hits.y[0])};
+        const Vec3 across = scene.surface(SurfaceId(hits.surface[0])).frame.lift(q) - middle;
+        const Vec3 from = middle + 0.1 * across;
+        const Vec3 to = bounds(scene).center() + 0.25 * across;
+        if (glm::length(to - from) > 1e-3 * scene.diameter) {
+            views.push_back(looking(from, to, 65));
+        }
+    }
+    return views;
+}
+
+std::vector<View> candidates(const Scene& scene, const RayCaster& caster)
 {
     const Box box = bounds(scene);
     const Vec3 center = box.center(), half = box.half();
-    std::vector<View> views;
+    std::vector<View> views = before_surfaces(scene, caster);
     for (int corner = 0; corner < 4; ++corner) {
         // Not into the corner itself, and rather at the height of somebody who stands.
         const Vec3 side{corner & 1 ? 0.86 : -0.86, 0.3, corner & 2 ? 0.86 : -0.86};
@@ -59,7 +100,7 @@ std::vector<View> candidates(const Scene& scene)
     return views;
 }
 
-/// Share of the picture that shows fronts, more when they are many.
+/// The share of the picture that shows fronts counts twice, then how many there are.
 double score(const RayCaster& caster, const View& view)
 {
     const ViewHits hits = trace_view(caster, view, 48, 48, 1);
@@ -72,7 +113,7 @@ double score(const RayCaster& caster, const View& view)
         }
     }
     const double share = static_cast<double>(fronts) / static_cast<double>(hits.surface.size());
-    return share * (1.0 + std::log(1.0 + static_cast<double>(seen.size())));
+    return share * share * (1.0 + std::log(1.0 + static_cast<double>(seen.size())));
 }
 
 }  // namespace
@@ -81,7 +122,7 @@ View default_view(const Scene& scene, const RayCaster& caster)
 {
     View best;
     double best_score = -1;
-    for (const View& view : candidates(scene)) {
+    for (const View& view : candidates(scene, caster)) {
         const double s = score(caster, view);
         if (s > best_score * 1.0001) {
             best = view;

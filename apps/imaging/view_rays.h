@@ -28,7 +28,7 @@ private:
 };
 
 /// A camera for a scene that has none: of a fixed set of places (in the corners of the bounding box, looking to
-/// the opposite one; for open scenes also before each of its sides, looking at the middle) the one from which
+/// the opposite one; before the largest surfaces; for open scenes also before each side of the box) the one from which
 /// most of the picture shows fronts of surfaces, and many different ones. y is taken as up.
 View default_view(const Scene& scene, const RayCaster& caster);
 

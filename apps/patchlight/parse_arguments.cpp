@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <memory>
+#include <set>
 
 namespace patchlight {
 
@@ -313,6 +313,17 @@ struct Parser {
         c.add_option("-o", exported.output, "file to write")->required()->type_name("FILE");
     }
 
+    /// CLI11 would only say that a command is missing.
+    static void check_command(int argc, const char* const* argv)
+    {
+        static const std::set<std::string> commands{"demo", "inspect", "solve", "render", "probe", "export"};
+        const std::string word = argc > 1 ? argv[1] : "";
+        if (!word.empty() && word.front() != '-' && commands.count(word) == 0) {
+            throw UsageError("usage", "there is no command \"" + word +
+                                          "\"; there are demo, inspect, solve, render, probe, export");
+        }
+    }
+
     Command chosen()
     {
         if (app.got_subcommand("solve")) {
@@ -352,6 +363,7 @@ double metres_per(const std::string& unit)
 Command parse_arguments(int argc, const char* const* argv)
 {
     Parser parser;
+    parser.check_command(argc, argv);
     try {
         parser.app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
