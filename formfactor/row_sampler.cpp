@@ -138,16 +138,16 @@ void RowSampler::accumulate(const HemisphereSet& set, RowScratch& scratch) const
     scratch.traced += set.size();
     if (scratch.weight.size() < mesh_.patch_count()) scratch.weight.resize(mesh_.patch_count(), 0.0F);
     scratch.touched.clear();
+    scratch.found.resize(set.size());
+    locator_.locate(scratch.hits.surface, scratch.hits.x, scratch.hits.y, HitBatch::black_back, scratch.found);
     double escaped = 0, backs = 0;
     for (std::size_t i = 0; i < set.size(); ++i) {
-        const std::uint32_t surface = scratch.hits.surface[i];
-        if (surface >= HitBatch::black_back) {
-            (surface == HitBatch::escaped ? escaped : backs) += static_cast<double>(set.factor[i]);
+        if (!scratch.found[i].valid()) {
+            (scratch.hits.surface[i] == HitBatch::escaped ? escaped : backs) += static_cast<double>(set.factor[i]);
             continue;
         }
-        const PatchId patch = locator_.locate(SurfaceId(surface), scratch.hits.x[i], scratch.hits.y[i]);
-        float& weight = scratch.weight[patch.value];
-        if (weight == 0) scratch.touched.push_back(patch.value);
+        float& weight = scratch.weight[scratch.found[i].value];
+        if (weight == 0) scratch.touched.push_back(scratch.found[i].value);
         weight += set.factor[i];
     }
     scratch.row.escaped = escaped;

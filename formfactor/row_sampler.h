@@ -13,6 +13,7 @@ namespace patchlight {
 struct RowScratch {
     RayBatch rays;
     HitBatch hits;
+    std::vector<PatchId> found;          ///< the patch under each hit
     std::vector<float> weight;           ///< per patch, 0 between rows
     std::vector<std::uint32_t> touched;  ///< patches with weight
     std::vector<ReceiverPoint> receivers;

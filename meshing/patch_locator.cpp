@@ -120,33 +120,61 @@ std::uint32_t PatchLocator::build_grid(const Box& box, const std::vector<std::ui
     return index;
 }
 
+std::uint32_t PatchLocator::cell_index(const Grid& grid, float x, float y) const
+{
+    const int ix = std::clamp(static_cast<int>((x - grid.x0) * grid.inverse_dx), 0, grid.nx - 1);
+    const int iy = std::clamp(static_cast<int>((y - grid.y0) * grid.inverse_dy), 0, grid.ny - 1);
+    return grid.first_cell + static_cast<std::uint32_t>(iy * grid.nx + ix);
+}
+
+PatchId PatchLocator::search(const Cell& start, float x, float y) const
+{
+    Cell cell = start;
+    while (cell.count == 0) cell = cells_[cell_index(grids_[cell.first], x, y)];
+    float best = -std::numeric_limits<float>::max();
+    std::uint32_t patch = entries_[cell.first].patch;
+    for (std::uint32_t i = cell.first; i < cell.first + cell.count; ++i) {
+        const Entry& e = entries_[i];
+        const float u = x - e.x0, v = y - e.y0;
+        const float w0 = e.a0 * u + e.b0 * v + e.c0, w1 = e.a1 * u + e.b1 * v + e.c1;
+        const float inside = std::min(std::min(w0, w1), 1 - w0 - w1);
+        if (inside > best) {
+            best = inside;
+            patch = e.patch;
+            if (inside >= 0) break;
+        }
+    }
+    return PatchId(patch);
+}
+
 PatchId PatchLocator::locate(SurfaceId surface, float x, float y) const
 {
-    std::uint32_t g = surface_grid_[surface.value];
-    if (g == no_grid) return {};
-    for (;;) {
-        const Grid& grid = grids_[g];
-        const int ix = std::clamp(static_cast<int>((x - grid.x0) * grid.inverse_dx), 0, grid.nx - 1);
-        const int iy = std::clamp(static_cast<int>((y - grid.y0) * grid.inverse_dy), 0, grid.ny - 1);
-        const Cell cell = cells_[grid.first_cell + static_cast<std::uint32_t>(iy * grid.nx + ix)];
-        if (cell.count == 0) {
-            g = cell.first;
-            continue;
+    const std::uint32_t grid = surface_grid_[surface.value];
+    return grid == no_grid ? PatchId() : search(cells_[cell_index(grids_[grid], x, y)], x, y);
+}
+
+void PatchLocator::locate(std::span<const std::uint32_t> surface, std::span<const float> x, std::span<const float> y,
+                          std::uint32_t no_surface, std::span<PatchId> patches) const
+{
+    constexpr std::size_t ahead = 64;
+    std::array<std::uint32_t, ahead> cells;
+    for (std::size_t first = 0; first < surface.size(); first += ahead) {
+        const std::size_t n = std::min(ahead, surface.size() - first);
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t i = first + k;
+            const std::uint32_t grid = surface[i] < no_surface ? surface_grid_[surface[i]] : no_grid;
+            cells[k] = grid == no_grid ? no_grid : cell_index(grids_[grid], x[i], y[i]);
+            if (cells[k] != no_grid) __builtin_prefetch(&cells_[cells[k]]);
         }
-        float best = -std::numeric_limits<float>::max();
-        std::uint32_t patch = entries_[cell.first].patch;
-        for (std::uint32_t i = cell.first; i < cell.first + cell.count; ++i) {
-            const Entry& e = entries_[i];
-            const float u = x - e.x0, v = y - e.y0;
-            const float w0 = e.a0 * u + e.b0 * v + e.c0, w1 = e.a1 * u + e.b1 * v + e.c1;
-            const float inside = std::min(std::min(w0, w1), 1 - w0 - w1);
-            if (inside > best) {
-                best = inside;
-                patch = e.patch;
-                if (inside >= 0) break;
-            }
+        for (std::size_t k = 0; k < n; ++k) {
+            if (cells[k] == no_grid) continue;
+            const Cell& cell = cells_[cells[k]];
+            const char* entry = cell.count > 0 ? reinterpret_cast<const char*>(&entries_[cell.first])
+                                               : reinterpret_cast<const char*>(&grids_[cell.first]);
+            for (std::size_t line = 0; line < 3; ++line) __builtin_prefetch(entry + 64 * line);
         }
-        return PatchId(patch);
+        for (std::size_t k = 0; k < n; ++k)
+            patches[first + k] = cells[k] == no_grid ? PatchId() : search(cells_[cells[k]], x[first + k], y[first + k]);
     }
 }
 

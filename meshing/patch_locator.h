@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -17,6 +18,11 @@ public:
     /// The patch of `surface` that contains the point with plane coordinates (x, y), or the nearest one among
     /// those of its grid cell when rounding puts the point just outside all. Invalid only if the surface has no patch.
     PatchId locate(SurfaceId surface, float x, float y) const;
+
+    /// The same for many hits at once, in stages that fetch ahead: on a large mesh most of a look-up is waiting for
+    /// memory. surface[i] ≥ `no_surface` gives an invalid patch.
+    void locate(std::span<const std::uint32_t> surface, std::span<const float> x, std::span<const float> y,
+                std::uint32_t no_surface, std::span<PatchId> patches) const;
 
     /// Barycentric coordinates of the plane point q in a patch, clamped into it; they sum to 1.
     std::array<double, 3> barycentric(PatchId patch, const Vec2& q) const;
@@ -40,6 +46,8 @@ private:
         float x0, y0, x1, y1;
     };
 
+    std::uint32_t cell_index(const Grid& grid, float x, float y) const;
+    PatchId search(const Cell& cell, float x, float y) const;
     std::uint32_t build_grid(const Box& box, const std::vector<std::uint32_t>& patches, int depth);
     Entry make_entry(std::uint32_t patch) const;
     bool overlaps(std::uint32_t patch, const Box& box) const;
