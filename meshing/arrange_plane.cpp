@@ -39,7 +39,8 @@ using FlowMap = std::map<Edge, Flow>;
 
 void add(Flow& flow, std::uint32_t face, int amount)
 {
-    const auto at = std::lower_bound(flow.begin(), flow.end(), face, [](const auto& f, std::uint32_t id) { return f.first < id; });
+    const auto at =
+        std::lower_bound(flow.begin(), flow.end(), face, [](const auto& f, std::uint32_t id) { return f.first < id; });
     if (at == flow.end() || at->first != face) {
         flow.insert(at, {face, amount});
     } else if ((at->second += amount) == 0) {
@@ -62,7 +63,8 @@ public:
 
 private:
     void insert_vertices();
-    void spread_flows(const std::vector<std::pair<Edge, Triangulation::Constraint_id>>& constraints, const FlowMap& wanted);
+    void spread_flows(const std::vector<std::pair<Edge, Triangulation::Constraint_id>>& constraints,
+                      const FlowMap& wanted);
     std::vector<Flow> flood();
     std::uint32_t index(VertexHandle v) const { return v->info().index; }
     std::optional<PlaneTriangle> resolve(FaceHandle f, const Flow& winding, const std::vector<std::uint32_t>& rank,
@@ -160,7 +162,8 @@ std::vector<Flow> PlaneBuilder::flood()
 }
 
 std::optional<PlaneTriangle> PlaneBuilder::resolve(FaceHandle f, const Flow& winding,
-                                                   const std::vector<std::uint32_t>& rank, PlaneArrangement& result) const
+                                                   const std::vector<std::uint32_t>& rank,
+                                                   PlaneArrangement& result) const
 {
     PlaneTriangle triangle;
     std::vector<std::uint32_t> fronts, backs;
@@ -213,8 +216,8 @@ PlaneArrangement PlaneBuilder::windings(const std::vector<std::uint32_t>& rank)
 
 }  // namespace
 
-PlaneArrangement arrange_plane(const PlaneGroup& group, const EdgeChains& chains, const std::vector<std::uint32_t>& rank,
-                               PolygonSoup& soup)
+PlaneArrangement arrange_plane(const PlaneGroup& group, const EdgeChains& chains,
+                               const std::vector<std::uint32_t>& rank, PolygonSoup& soup)
 {
     PlaneBuilder builder(group, soup);
     builder.insert(chains);
@@ -227,7 +230,8 @@ std::vector<std::uint32_t> rank_faces(const PolygonSoup& soup)
     std::iota(order.begin(), order.end(), 0U);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         const SoupFace &p = soup.faces[a], &q = soup.faces[b];
-        const bool p_emits = soup.materials[p.material.value].emits(), q_emits = soup.materials[q.material.value].emits();
+        const bool p_emits = soup.materials[p.material.value].emits(),
+                   q_emits = soup.materials[q.material.value].emits();
         if (p_emits != q_emits) return p_emits;
         return p.area < q.area;
     });

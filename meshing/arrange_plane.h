@@ -22,7 +22,7 @@ struct PlaneTriangle {
 
 /// The pieces into which the edges of a group's faces, and all that touches its plane, cut it.
 struct PlaneArrangement {
-    std::vector<PlaneTriangle> triangles;  ///< those that some face covers, sorted by vertices
+    std::vector<PlaneTriangle> triangles;                           ///< those that some face covers, sorted by vertices
     std::vector<std::pair<std::uint32_t, std::uint32_t>> overlaps;  ///< pairs of faces on the same side of one triangle
     std::vector<std::uint32_t> self_crossing;  ///< faces that wind round some point the wrong way, or twice
 };
@@ -30,8 +30,8 @@ struct PlaneArrangement {
 /// Arranges a group's faces: a constrained Delaunay triangulation of all split edges; each triangle shows, on
 /// either side, the face with the smallest rank of those that wind round it. May append vertices to the soup
 /// where edges cross within the snapping distance of one another.
-PlaneArrangement arrange_plane(const PlaneGroup& group, const EdgeChains& chains, const std::vector<std::uint32_t>& rank,
-                               PolygonSoup& soup);
+PlaneArrangement arrange_plane(const PlaneGroup& group, const EdgeChains& chains,
+                               const std::vector<std::uint32_t>& rank, PolygonSoup& soup);
 
 /// Who wins where faces of the same side overlap: emitters, then the smaller face, then the earlier in the soup.
 std::vector<std::uint32_t> rank_faces(const PolygonSoup& soup);

@@ -22,9 +22,8 @@ namespace {
 
 void require_light(const RawScene& raw, const PolygonSoup& soup, const SceneOptions& options)
 {
-    const bool lit = std::any_of(soup.faces.begin(), soup.faces.end(), [&](const SoupFace& face) {
-        return soup.materials[face.material.value].emits();
-    });
+    const bool lit = std::any_of(soup.faces.begin(), soup.faces.end(),
+                                 [&](const SoupFace& face) { return soup.materials[face.material.value].emits(); });
     if (!lit && options.require_emitter) {
         throw SceneError("dark", fmt::format("{}: no emitter; set Ke or use --emitter MATERIAL=W", raw.file_name));
     }
@@ -109,7 +108,9 @@ void sort_scene(Scene& scene)
         }
     }
     std::sort(scene.triangles.begin(), scene.triangles.end(), [](const SceneTriangle& a, const SceneTriangle& b) {
-        const auto key = [](const SceneTriangle& t) { return std::tuple(std::min(t.front, t.back), t.front, t.vertices); };
+        const auto key = [](const SceneTriangle& t) {
+            return std::tuple(std::min(t.front, t.back), t.front, t.vertices);
+        };
         return key(a) < key(b);
     });
 }

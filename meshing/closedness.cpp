@@ -24,9 +24,9 @@ constexpr std::uint32_t side_of(std::uint32_t triangle, bool front)
 
 struct EdgeUse {
     std::uint32_t low, high;
-    double angle;            ///< of the triangle, round the edge
+    double angle;  ///< of the triangle, round the edge
     std::uint32_t triangle;
-    bool ascending;          ///< the triangle runs from low to high
+    bool ascending;  ///< the triangle runs from low to high
 };
 
 std::vector<EdgeUse> edge_uses(const Scene& scene)

@@ -41,7 +41,8 @@ bool pierces(const SoupFace& needle, const SoupFace& sheet, const PolygonSoup& s
     for (const std::uint32_t v : sheet.loop) loop.push_back(frame.to_plane(soup.vertices[v]));
     for (std::size_t k = 0; k < heights.size(); ++k) {
         const std::size_t next = (k + 1) % heights.size();
-        if (!(std::min(heights[k], heights[next]) < -soup.snap && std::max(heights[k], heights[next]) > soup.snap)) continue;
+        if (!(std::min(heights[k], heights[next]) < -soup.snap && std::max(heights[k], heights[next]) > soup.snap))
+            continue;
         const Vec3 &a = soup.vertices[needle.loop[k]], &b = soup.vertices[needle.loop[next]];
         const Vec3 point = a + heights[k] / (heights[k] - heights[next]) * (b - a);
         if (well_inside(frame.to_plane(point), loop, soup.snap)) return true;

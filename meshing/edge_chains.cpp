@@ -61,7 +61,8 @@ struct Division {
 };
 
 /// Appends crossing points, welded with the vertices and with one another, in an order that geometry decides.
-std::vector<Division> divide_at_crossings(const std::vector<Edge>& edges, const std::vector<Box3>& boxes, PolygonSoup& soup)
+std::vector<Division> divide_at_crossings(const std::vector<Edge>& edges, const std::vector<Box3>& boxes,
+                                          PolygonSoup& soup)
 {
     struct Found {
         Vec3 point;
@@ -140,7 +141,8 @@ EdgeChains::EdgeChains(PolygonSoup& soup, SceneReport& report) : edges_(all_edge
     }
     for (std::size_t e = 0; e < edges_.size(); ++e) {
         std::sort(chains_[e].begin() + 1, chains_[e].end(), [&](std::uint32_t a, std::uint32_t b) {
-            return along(edges_[e], soup.vertices[a], soup.vertices) < along(edges_[e], soup.vertices[b], soup.vertices);
+            return along(edges_[e], soup.vertices[a], soup.vertices) <
+                   along(edges_[e], soup.vertices[b], soup.vertices);
         });
         chains_[e].push_back(edges_[e].second);
     }

@@ -23,7 +23,8 @@ std::vector<std::uint32_t> canonical_loop(std::vector<std::uint32_t> loop);
 
 FaceShape shape_of(const std::vector<std::uint32_t>& loop, const std::vector<Vec3>& vertices);
 
-/// Cuts a polygon that isn't planar: a quadrilateral at its shorter diagonal, others ear by ear as seen along the normal.
+/// Cuts a polygon that isn't planar: a quadrilateral at its shorter diagonal, others ear by ear as seen along the
+/// normal.
 std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(const std::vector<std::uint32_t>& loop,
                                                              const std::vector<Vec3>& vertices, const Vec3& normal);
 

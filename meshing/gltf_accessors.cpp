@@ -53,17 +53,21 @@ Elements open_accessor(const GltfFile& gltf, int index, int type, const std::str
     const auto& data = gltf.model.buffers.at(static_cast<std::size_t>(view.buffer)).data;
     const int stride = accessor->ByteStride(view);
     const int component_size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor->componentType));
-    if (stride <= 0 || component_size <= 0) refuse(where, fmt::format("accessor {} has a wrong stride or component type", index));
-    const std::size_t element = static_cast<std::size_t>(component_size) *
-                                static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
+    if (stride <= 0 || component_size <= 0)
+        refuse(where, fmt::format("accessor {} has a wrong stride or component type", index));
+    const std::size_t element =
+        static_cast<std::size_t>(component_size) *
+        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
     Elements elements{nullptr, accessor->count, static_cast<std::size_t>(stride), accessor->componentType,
                       accessor->normalized};
     if (elements.count == 0) return elements;
-    const std::size_t room = view.byteOffset <= data.size() ? std::min(view.byteLength, data.size() - view.byteOffset) : 0;
+    const std::size_t room =
+        view.byteOffset <= data.size() ? std::min(view.byteLength, data.size() - view.byteOffset) : 0;
     const bool fits = accessor->byteOffset <= room && element <= room - accessor->byteOffset &&
                       elements.count - 1 <= (room - accessor->byteOffset - element) / elements.stride;
     if (!fits) {
-        refuse(where, fmt::format("accessor {} claims {} elements, its buffer view has {} bytes", index, elements.count, room));
+        refuse(where, fmt::format("accessor {} claims {} elements, its buffer view has {} bytes", index, elements.count,
+                                  room));
     }
     elements.first = data.data() + view.byteOffset + accessor->byteOffset;
     return elements;
@@ -88,17 +92,25 @@ double load_integer(const unsigned char* bytes, std::size_t k, bool normalized)
 double component(const Elements& elements, const unsigned char* at, std::size_t k, const std::string& where)
 {
     switch (elements.component) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return load<float>(at + 4 * k);
-        case TINYGLTF_COMPONENT_TYPE_DOUBLE: return load<double>(at + 8 * k);
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return load_integer<std::int8_t>(at, k, elements.normalized);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load_integer<std::uint8_t>(at, k, elements.normalized);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return load_integer<std::int16_t>(at, k, elements.normalized);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load_integer<std::uint16_t>(at, k, elements.normalized);
-        default: refuse(where, "positions have a component type that is not allowed");
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return load<float>(at + 4 * k);
+    case TINYGLTF_COMPONENT_TYPE_DOUBLE:
+        return load<double>(at + 8 * k);
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return load_integer<std::int8_t>(at, k, elements.normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return load_integer<std::uint8_t>(at, k, elements.normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return load_integer<std::int16_t>(at, k, elements.normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return load_integer<std::uint16_t>(at, k, elements.normalized);
+    default:
+        refuse(where, "positions have a component type that is not allowed");
     }
 }
 
-std::vector<std::size_t> read_indices(const GltfFile& gltf, int accessor, std::size_t vertices, const std::string& where)
+std::vector<std::size_t> read_indices(const GltfFile& gltf, int accessor, std::size_t vertices,
+                                      const std::string& where)
 {
     std::vector<std::size_t> indices;
     if (accessor < 0) {
@@ -111,13 +123,21 @@ std::vector<std::size_t> read_indices(const GltfFile& gltf, int accessor, std::s
     for (std::size_t i = 0; i < elements.count; ++i) {
         const unsigned char* at = elements.first + i * elements.stride;
         switch (elements.component) {
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: indices.push_back(load<std::uint8_t>(at)); break;
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: indices.push_back(load<std::uint16_t>(at)); break;
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: indices.push_back(load<std::uint32_t>(at)); break;
-            default: refuse(where, "indices have a component type that is not allowed");
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            indices.push_back(load<std::uint8_t>(at));
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            indices.push_back(load<std::uint16_t>(at));
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            indices.push_back(load<std::uint32_t>(at));
+            break;
+        default:
+            refuse(where, "indices have a component type that is not allowed");
         }
         if (indices.back() >= vertices) {
-            throw SceneError("index", fmt::format("{}: index {} refers to vertex {} of {}", where, i, indices.back(), vertices));
+            throw SceneError("index",
+                             fmt::format("{}: index {} refers to vertex {} of {}", where, i, indices.back(), vertices));
         }
     }
     return indices;

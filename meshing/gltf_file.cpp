@@ -132,9 +132,11 @@ void check_buffer_views(json& document, const std::string& name)
     const json& views = array_of(document, "bufferViews", name);
     for (std::size_t v = 0; v < views.size(); ++v) {
         const std::size_t buffer = count_in(views[v], "buffer", name);
-        if (buffer >= buffers.size()) refuse(name, fmt::format("buffer view {} refers to buffer {} of {}", v, buffer, buffers.size()));
+        if (buffer >= buffers.size())
+            refuse(name, fmt::format("buffer view {} refers to buffer {} of {}", v, buffer, buffers.size()));
         const std::size_t length = count_in(buffers[buffer], "byteLength", name);
-        const std::size_t offset = count_in(views[v], "byteOffset", name), size = count_in(views[v], "byteLength", name);
+        const std::size_t offset = count_in(views[v], "byteOffset", name),
+                          size = count_in(views[v], "byteLength", name);
         if (offset > length || size > length - offset) {
             refuse(name, fmt::format("buffer view {} ends past its buffer's {} bytes", v, length));
         }
@@ -221,7 +223,8 @@ tinygltf::FsCallbacks folder_callbacks(const SceneFolder& folder)
         return target && std::filesystem::is_regular_file(*target, failure);
     };
     callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& path, void* user) {
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& path,
+                                 void* user) {
         const auto target = inside(path, user);
         if (!target) return false;
         try {
@@ -287,10 +290,9 @@ GltfFile load_gltf(const std::filesystem::path& file)
     std::string error, warning;
     const std::string folder = gltf.folder.path().string();
     const bool read =
-        parts.is_glb
-            ? reader.LoadBinaryFromMemory(&gltf.model, &error, &warning,
-                                          reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-            : reader.LoadASCIIFromString(&gltf.model, &error, &warning, bytes.data(), size, folder);
+        parts.is_glb ? reader.LoadBinaryFromMemory(&gltf.model, &error, &warning,
+                                                   reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+                     : reader.LoadASCIIFromString(&gltf.model, &error, &warning, bytes.data(), size, folder);
     if (!read) refuse(name, one_line(error));
     if (!warning.empty()) gltf.warnings.push_back(fmt::format("{}: {}", name, one_line(warning)));
     return gltf;

@@ -14,10 +14,10 @@ namespace patchlight {
 
 /// A glTF file read, but not yet understood.
 struct GltfFile {
-    std::string name;       ///< as messages name it
+    std::string name;  ///< as messages name it
     SceneFolder folder;
-    tinygltf::Model model;  ///< without its images
-    nlohmann::json images;  ///< the document's array of images, to be read when a material asks for them
+    tinygltf::Model model;             ///< without its images
+    nlohmann::json images;             ///< the document's array of images, to be read when a material asks for them
     std::vector<bool> buffer_refused;  ///< by buffer: its file lies outside the scene's folder and wasn't opened
     std::vector<std::string> required_extensions;
     std::vector<std::string> warnings;

@@ -53,7 +53,8 @@ std::vector<std::size_t> roots(const GltfFile& gltf)
     std::vector<bool> is_child(model.nodes.size(), false);
     for (const tinygltf::Node& node : model.nodes) {
         for (const int child : node.children) {
-            if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) is_child[static_cast<std::size_t>(child)] = true;
+            if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
+                is_child[static_cast<std::size_t>(child)] = true;
         }
     }
     for (std::size_t n = 0; n < model.nodes.size(); ++n) {
@@ -78,7 +79,8 @@ std::vector<PlacedNode> place_nodes(const GltfFile& gltf, std::vector<std::strin
     std::vector<PlacedNode> placed;
     const auto add = [&](std::size_t index, const glm::dmat4& parent) {
         if (index >= nodes.size()) {
-            throw SceneError("gltf", fmt::format("{}: node {} of {}", gltf.name, static_cast<int>(index), nodes.size()));
+            throw SceneError("gltf",
+                             fmt::format("{}: node {} of {}", gltf.name, static_cast<int>(index), nodes.size()));
         }
         if (visited[index]) {
             throw SceneError("gltf", fmt::format("{}: node {} has two parents or lies in a cycle", gltf.name, index));
@@ -92,8 +94,8 @@ std::vector<PlacedNode> place_nodes(const GltfFile& gltf, std::vector<std::strin
         for (const int child : nodes[parent.index].children) add(static_cast<std::size_t>(child), parent.to_world);
     }
     if (placed.size() < nodes.size()) {
-        warnings.push_back(
-            fmt::format("{}: {} nodes are not part of the scene and are ignored", gltf.name, nodes.size() - placed.size()));
+        warnings.push_back(fmt::format("{}: {} nodes are not part of the scene and are ignored", gltf.name,
+                                       nodes.size() - placed.size()));
     }
     return placed;
 }

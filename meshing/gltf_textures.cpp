@@ -118,7 +118,8 @@ std::optional<Rgb> mean_texture_colour(const GltfFile& gltf, int texture, std::s
         return {};
     }
     if (size.width > largest_side || size.height > largest_side) {
-        why = fmt::format("it has {} × {} pixels, more than {} × {}", size.width, size.height, largest_side, largest_side);
+        why = fmt::format("it has {} × {} pixels, more than {} × {}", size.width, size.height, largest_side,
+                          largest_side);
         return {};
     }
     tinygltf::Image image;

@@ -63,8 +63,7 @@ class SideJoiner {
 public:
     SideJoiner(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup, Side side)
         : group_(group), arrangement_(arrangement), soup_(soup), side_(side)
-    {
-    }
+    {}
     void join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result);
 
 private:

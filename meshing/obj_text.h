@@ -33,7 +33,7 @@ double number_or_nan(std::string_view word);
 /// What the OBJ reader doesn't tell or gets wrong: line numbers, numbers that aren't (it reads `nan 0 1` as
 /// `0 0 1`), indices that don't fit (it wraps them), and the names of material files with spaces in them.
 struct ObjText {
-    std::vector<Vec3> vertices;              ///< file units; NaN where the text has no finite number
+    std::vector<Vec3> vertices;  ///< file units; NaN where the text has no finite number
     std::vector<std::size_t> vertex_lines;
     std::vector<std::size_t> face_lines;
     std::map<std::size_t, std::string> bad_corners;  ///< line of a face → the corner that is no index

@@ -20,7 +20,8 @@ PlaneFrame frame_with_normal(const Vec3& origin, const Vec3& normal, const Vec3&
     frame.origin = origin;
     frame.n = cleaned_normal(normal);
     for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(frame.n[axis]) != 1) continue;
+        // Tilted by less than 1e-8 a component rounds to 1 already: the others must vanish.
+        if (std::abs(frame.n[axis]) != 1 || frame.n[(axis + 1) % 3] != 0 || frame.n[(axis + 2) % 3] != 0) continue;
         frame.u = frame.v = Vec3{0.0};
         frame.u[(axis + 1) % 3] = 1;
         frame.v[(axis + 2) % 3] = 1;

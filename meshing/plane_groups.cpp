@@ -105,8 +105,9 @@ void find_contacts(const PolygonSoup& soup, const EdgeChains& chains,
         const auto chain = chains.chain(e);
         for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
             std::vector<std::uint32_t> both;
-            std::set_intersection(groups_of[chain[k]].begin(), groups_of[chain[k]].end(), groups_of[chain[k + 1]].begin(),
-                                  groups_of[chain[k + 1]].end(), std::back_inserter(both));
+            std::set_intersection(groups_of[chain[k]].begin(), groups_of[chain[k]].end(),
+                                  groups_of[chain[k + 1]].begin(), groups_of[chain[k + 1]].end(),
+                                  std::back_inserter(both));
             for (const std::uint32_t g : both) groups[g].contact_edges.push_back(std::minmax(chain[k], chain[k + 1]));
         }
     }

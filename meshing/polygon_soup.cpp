@@ -119,9 +119,10 @@ void name_faces(const RawScene& raw, PolygonSoup& soup, std::vector<SoupFace>& f
         material_used[face.material.value] = true;
         object_used[face.object.value] = true;
     }
-    const auto materials =
-        sort_used(raw.materials, material_used, [](const Material& m) { return as_tuple(m); }, soup.materials);
-    const auto objects = sort_used(raw.objects, object_used, [](const std::string& s) { return s; }, soup.objects);
+    const auto materials = sort_used(
+        raw.materials, material_used, [](const Material& m) { return as_tuple(m); }, soup.materials);
+    const auto objects = sort_used(
+        raw.objects, object_used, [](const std::string& s) { return s; }, soup.objects);
     for (SoupFace& face : faces) {
         face.material = MaterialId(materials[face.material.value]);
         face.object = ObjectId(objects[face.object.value]);
@@ -177,7 +178,12 @@ PolygonSoup make_polygon_soup(const RawScene& raw, const SceneOptions& options, 
     const double resolution = raw.relative_precision * std::max({largest.x, largest.y, largest.z});
     soup.center = 0.5 * box.low + 0.5 * box.high;
     soup.diameter = glm::length(box.high - box.low);
-    if (!(soup.diameter > 0)) no_area();
+    // Products of lengths must neither overflow nor vanish.
+    if (!(soup.diameter < 1e100)) {
+        throw SceneError("nonfinite",
+                         fmt::format("{}: the scene is {} m across, which is too large", raw.file_name, soup.diameter));
+    }
+    if (!(soup.diameter > 1e-100)) no_area();
     // What the file's own precision can't tell apart must weld, too.
     soup.snap = std::max(options.snap * soup.diameter, 4 * resolution);
     report.snap_distance = soup.snap;

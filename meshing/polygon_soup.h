@@ -20,15 +20,16 @@ struct SoupFace {
 struct PolygonSoup {
     Vec3 center{0.0};
     double diameter = 0;
-    double snap = 0;              ///< metres
-    std::vector<Vec3> vertices;   ///< recentred, sorted by x, y, z
-    std::vector<SoupFace> faces;  ///< sorted by their loops
+    double snap = 0;                   ///< metres
+    std::vector<Vec3> vertices;        ///< recentred, sorted by x, y, z
+    std::vector<SoupFace> faces;       ///< sorted by their loops
     std::vector<Material> materials;   ///< those that faces use, sorted by name
     std::vector<std::string> objects;  ///< sorted by name
 };
 
 /// Recentres, welds vertices within the snapping distance, drops faces without area and duplicates, and cuts
-/// faces that aren't planar into triangles. Throws SceneError("zeroarea") when no face is left.
+/// faces that aren't planar into triangles. Throws SceneError("zeroarea") when no face is left, "nonfinite"
+/// when the scene is more than 1e100 m across.
 PolygonSoup make_polygon_soup(const RawScene& raw, const SceneOptions& options, SceneReport& report);
 
 }  // namespace patchlight

@@ -23,16 +23,16 @@ struct RawFace {
 
 /// What a reader hands over before anything is checked or mended: indices may be past the end, coordinates not finite.
 struct RawScene {
-    std::string format;     ///< "obj" or "gltf"
-    std::string file_name;  ///< as messages name it, without folders
+    std::string format;                     ///< "obj" or "gltf"
+    std::string file_name;                  ///< as messages name it, without folders
     std::vector<Vec3> vertices;             ///< metres
     std::vector<std::size_t> vertex_lines;  ///< of the file, from 1; empty where the format has no lines
     std::vector<std::int64_t> corners;      ///< indices into vertices
     std::vector<RawFace> faces;
     std::vector<Material> materials;
     std::vector<std::string> objects;
-    std::vector<View> views;               ///< positions in metres, not yet recentred
-    double relative_precision = 0x1p-52;   ///< of the coordinates: 2^-23 when the file holds single precision
+    std::vector<View> views;              ///< positions in metres, not yet recentred
+    double relative_precision = 0x1p-52;  ///< of the coordinates: 2^-23 when the file holds single precision
     std::vector<std::string> warnings;
 
     std::span<const std::int64_t> corners_of(const RawFace& face) const

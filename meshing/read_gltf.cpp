@@ -16,9 +16,12 @@ namespace {
 
 constexpr std::size_t most_corners = 100'000'000;
 
-const std::set<std::string> understood_extensions = {"KHR_materials_emissive_strength", "KHR_mesh_quantization",
-                                                     "KHR_materials_unlit",             "KHR_texture_transform",
-                                                     "KHR_materials_ior",               "KHR_materials_specular",
+const std::set<std::string> understood_extensions = {"KHR_materials_emissive_strength",
+                                                     "KHR_mesh_quantization",
+                                                     "KHR_materials_unlit",
+                                                     "KHR_texture_transform",
+                                                     "KHR_materials_ior",
+                                                     "KHR_materials_specular",
                                                      "KHR_lights_punctual"};
 
 /// Turns a model into faces, node by node.
@@ -52,8 +55,8 @@ Rgb GltfCollector::with_texture(const Rgb& factor, int texture, const std::strin
         raw_.warnings.push_back(fmt::format("material {}: {} texture is ignored: {}", material, what, why));
         return factor;
     }
-    raw_.warnings.push_back(fmt::format("material {}: {} texture counts as its mean colour {:.3f} {:.3f} {:.3f}", material,
-                                        what, mean->r, mean->g, mean->b));
+    raw_.warnings.push_back(fmt::format("material {}: {} texture counts as its mean colour {:.3f} {:.3f} {:.3f}",
+                                        material, what, mean->r, mean->g, mean->b));
     return factor * *mean;
 }
 
@@ -65,7 +68,8 @@ Material GltfCollector::material_of(const tinygltf::Material& read, std::size_t 
     const auto& colour = read.pbrMetallicRoughness.baseColorFactor;
     Rgb base{1.0};
     for (std::size_t k = 0; k < 3 && k < colour.size(); ++k) base[static_cast<int>(k)] = colour[k];
-    material.reflectance = with_texture(base, read.pbrMetallicRoughness.baseColorTexture.index, material.name, "base colour");
+    material.reflectance =
+        with_texture(base, read.pbrMetallicRoughness.baseColorTexture.index, material.name, "base colour");
     Rgb radiance{0.0};
     for (std::size_t k = 0; k < 3 && k < read.emissiveFactor.size(); ++k) {
         radiance[static_cast<int>(k)] = read.emissiveFactor[k];
@@ -134,7 +138,8 @@ void GltfCollector::add_mesh(const PlacedNode& node)
     }
 }
 
-void GltfCollector::add_primitive(const tinygltf::Primitive& primitive, const PlacedNode& node, const std::string& where)
+void GltfCollector::add_primitive(const tinygltf::Primitive& primitive, const PlacedNode& node,
+                                  const std::string& where)
 {
     const GltfTriangles mesh = read_triangles(gltf_, primitive, where);
     const auto material = static_cast<std::size_t>(primitive.material);
@@ -197,7 +202,8 @@ RawScene read_gltf(const std::filesystem::path& file, double unit)
     raw.warnings = std::move(gltf.warnings);
     for (const std::string& extension : gltf.required_extensions) {
         if (!understood_extensions.contains(extension)) {
-            throw SceneError("gltf", fmt::format("{}: needs the extension {}, which is not supported", gltf.name, extension));
+            throw SceneError("gltf",
+                             fmt::format("{}: needs the extension {}, which is not supported", gltf.name, extension));
         }
     }
     GltfCollector collector(gltf, unit, raw);

@@ -57,8 +57,8 @@ void warn_of_what_is_left_out(const tinyobj::material_t& read, std::vector<std::
 {
     const auto texture = [&](const std::string& name, const char* factor) {
         if (name.empty()) return;
-        warnings.push_back(fmt::format("material {}: texture {} is not read; {} is used for all of it", read.name, name,
-                                       factor));
+        warnings.push_back(
+            fmt::format("material {}: texture {} is not read; {} is used for all of it", read.name, name, factor));
     };
     texture(read.diffuse_texname, "Kd");
     texture(read.emissive_texname, "Ke");
@@ -81,7 +81,8 @@ void read_mtl(const std::string& text, const std::string& file_name, MtlLibrary&
         if (material.name.empty() || library.materials.contains(material.name)) continue;
         Material ours;
         ours.name = material.name;
-        if (const auto Ke = colours.Ke.find(ours.name); Ke != colours.Ke.end()) ours.emission = std::numbers::pi * Ke->second;
+        if (const auto Ke = colours.Ke.find(ours.name); Ke != colours.Ke.end())
+            ours.emission = std::numbers::pi * Ke->second;
         const auto Kd = colours.Kd.find(ours.name);
         if (Kd != colours.Kd.end()) {
             ours.reflectance = Kd->second;
@@ -105,7 +106,8 @@ void read_material_files(const std::string& names, const SceneFolder& folder, co
             if (quiet) return false;
             library.warnings.push_back(
                 file ? fmt::format("{}: material file {} is missing", obj_name, name)
-                     : fmt::format("{}: material file {} is outside the scene's folder and was not opened", obj_name, name));
+                     : fmt::format("{}: material file {} is outside the scene's folder and was not opened", obj_name,
+                                   name));
             return false;
         }
         read_mtl(read_whole_file(*file), file->filename().string(), library);

@@ -19,7 +19,8 @@ struct MtlLibrary {
 /// left out with a warning. Throws SceneError("material") where Kd or Ke isn't made of finite numbers.
 void read_mtl(const std::string& text, const std::string& file_name, MtlLibrary& library);
 
-/// Reads the files that an mtllib line names, from the scene's folder only: what is missing, or leaves it, is a warning.
+/// Reads the files that an mtllib line names, from the scene's folder only: what is missing, or leaves it, is a
+/// warning.
 void read_material_files(const std::string& names, const SceneFolder& folder, const std::string& obj_name,
                          MtlLibrary& library);
 

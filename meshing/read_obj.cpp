@@ -19,8 +19,7 @@ const std::string nameless_material = "default";
 /// Collects what the reader calls back with, statement by statement.
 class ObjCollector {
 public:
-    ObjCollector(RawScene& raw, const ObjText& text, const MtlLibrary& library)
-        : raw_(raw), text_(text)
+    ObjCollector(RawScene& raw, const ObjText& text, const MtlLibrary& library) : raw_(raw), text_(text)
     {
         // Those that no face uses, too: options may name them.
         for (const auto& [name, material] : library.materials) {
@@ -131,10 +130,12 @@ RawScene read_obj(const std::filesystem::path& file, double unit)
     raw.warnings = std::move(library.warnings);
     ObjCollector(raw, scanned, library).read(text);
     if (scanned.lines_and_points > 0) {
-        raw.warnings.push_back(fmt::format("{}: {} lines and points are ignored", raw.file_name, scanned.lines_and_points));
+        raw.warnings.push_back(
+            fmt::format("{}: {} lines and points are ignored", raw.file_name, scanned.lines_and_points));
     }
     if (scanned.curved > 0) {
-        raw.warnings.push_back(fmt::format("{}: {} curves and curved surfaces are ignored", raw.file_name, scanned.curved));
+        raw.warnings.push_back(
+            fmt::format("{}: {} curves and curved surfaces are ignored", raw.file_name, scanned.curved));
     }
     raw.vertices = std::move(scanned.vertices);
     for (Vec3& v : raw.vertices) v *= unit;

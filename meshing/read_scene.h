@@ -12,13 +12,13 @@ namespace patchlight {
 
 /// How a file is understood.
 struct SceneOptions {
-    double unit = 1.0;                      ///< metres per unit of the file, > 0
-    double max_reflectance = 0.95;          ///< used where a file says exactly 1; in (0, 1)
-    double snap = 1e-8;                     ///< welding, coplanarity and contact tolerance × diameter
-    bool all_two_sided = false;             ///< every material has two sides
-    std::vector<std::string> two_sided;     ///< materials with two sides
-    std::map<std::string, Rgb> emitters;    ///< exitance (W/m²) given to materials by name, in place of the file's
-    bool require_emitter = true;            ///< a scene without light is an error
+    double unit = 1.0;                    ///< metres per unit of the file, > 0
+    double max_reflectance = 0.95;        ///< used where a file says exactly 1; in (0, 1)
+    double snap = 1e-8;                   ///< welding, coplanarity and contact tolerance × diameter
+    bool all_two_sided = false;           ///< every material has two sides
+    std::vector<std::string> two_sided;   ///< materials with two sides
+    std::map<std::string, Rgb> emitters;  ///< exitance (W/m²) given to materials by name, in place of the file's
+    bool require_emitter = true;          ///< a scene without light is an error
 };
 
 /// What reading found, mended and left out: `patchlight inspect` shows it.
@@ -27,9 +27,9 @@ struct SceneReport {
     std::size_t vertices_read = 0;
     std::size_t faces_read = 0;
     std::size_t welded_vertices = 0;
-    std::size_t zero_area_faces = 0;    ///< dropped
-    std::size_t duplicate_faces = 0;    ///< dropped
-    std::size_t nonplanar_faces = 0;    ///< triangulated
+    std::size_t zero_area_faces = 0;  ///< dropped
+    std::size_t duplicate_faces = 0;  ///< dropped
+    std::size_t nonplanar_faces = 0;  ///< triangulated
     std::size_t self_crossing_faces = 0;
     std::size_t nonmanifold_edges = 0;
     std::size_t t_junctions = 0;

@@ -120,9 +120,10 @@ Loop without_collinear(Loop loop, const Border& border, const std::map<std::uint
     for (std::size_t k = 1; k < loop.size(); ++k) {
         const Vec2 &anchor = border.at(kept.back()), &next = border.at(loop[(k + 1) % loop.size()]);
         skipped.push_back(loop[k]);
-        const bool straight = uses.at(loop[k]) == 1 && std::all_of(skipped.begin(), skipped.end(), [&](std::uint32_t v) {
-            return distance_to_segment(border.at(v), anchor, next) <= snap;
-        });
+        const bool straight =
+            uses.at(loop[k]) == 1 && std::all_of(skipped.begin(), skipped.end(), [&](std::uint32_t v) {
+                return distance_to_segment(border.at(v), anchor, next) <= snap;
+            });
         if (straight) continue;
         kept.push_back(loop[k]);
         skipped.clear();
@@ -132,8 +133,8 @@ Loop without_collinear(Loop loop, const Border& border, const std::map<std::uint
 
 }  // namespace
 
-std::vector<Loop> trace_loops(std::vector<DirectedEdge> edges, const PlaneFrame& frame, const std::vector<Vec3>& vertices,
-                              double snap)
+std::vector<Loop> trace_loops(std::vector<DirectedEdge> edges, const PlaneFrame& frame,
+                              const std::vector<Vec3>& vertices, double snap)
 {
     Border border(std::move(edges), frame, vertices);
     std::vector<Loop> loops = border.loops();

@@ -32,7 +32,8 @@ void check_options(const SceneOptions& options)
         if (!holds) throw std::invalid_argument(message);
     };
     check(std::isfinite(options.unit) && options.unit > 0, "SceneOptions::unit must be > 0");
-    check(options.max_reflectance > 0 && options.max_reflectance < 1, "SceneOptions::max_reflectance must be in (0, 1)");
+    check(options.max_reflectance > 0 && options.max_reflectance < 1,
+          "SceneOptions::max_reflectance must be in (0, 1)");
     check(options.snap > 0 && options.snap < 1e-2, "SceneOptions::snap must be in (0, 0.01)");
 }
 
@@ -67,8 +68,8 @@ void check_reflectance(RawScene& raw, Material& material, double max_reflectance
             if (rho == 1) rho = max_reflectance;
         }
         if (!(material.emission[band] >= 0 && std::isfinite(material.emission[band]))) {
-            throw SceneError("material", fmt::format("{}: material {}: exitance {} is not ≥ 0 and finite", raw.file_name,
-                                                     material.name, material.emission[band]));
+            throw SceneError("material", fmt::format("{}: material {}: exitance {} is not ≥ 0 and finite",
+                                                     raw.file_name, material.name, material.emission[band]));
         }
     }
     if (is_one) {
@@ -108,7 +109,8 @@ void check_vertices(RawScene& raw, const std::vector<bool>& used)
         }
     }
     if (bad_unused > 1) {
-        raw.warnings.push_back(fmt::format("{}: {} vertices are not finite, no face uses them", raw.file_name, bad_unused));
+        raw.warnings.push_back(
+            fmt::format("{}: {} vertices are not finite, no face uses them", raw.file_name, bad_unused));
     }
 }
 

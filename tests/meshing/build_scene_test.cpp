@@ -117,7 +117,8 @@ TEST(BuildScene, a_block_standing_on_the_floor_shares_its_foot)
 TEST(BuildScene, a_plate_standing_inside_a_floor_polygon_is_an_edge_of_its_triangulation)
 {
     const Vec3 a{1, 1, 0}, b{2, 1.5, 0};
-    const std::vector<Polygon> polygons = {rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}), lamp_above,
+    const std::vector<Polygon> polygons = {rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}),
+                                           lamp_above,
                                            {{a, b, b + Vec3{0, 0, 1}, a + Vec3{0, 0, 1}}, "red", "plate"}};
     const LoadedScene loaded = load(polygons);
     expect_sound(loaded);
@@ -166,7 +167,8 @@ TEST(BuildScene, faces_without_area_and_duplicates_are_dropped_and_counted)
 
 TEST(BuildScene, needles_stay_and_are_counted)
 {
-    const LoadedScene loaded = load(with(room_with_lamp(), Polygon{{{1, 1, 1}, {2, 1, 1}, {2, 1 + 1e-6, 1}}, "red", "needle"}));
+    const LoadedScene loaded =
+        load(with(room_with_lamp(), Polygon{{{1, 1, 1}, {2, 1, 1}, {2, 1 + 1e-6, 1}}, "red", "needle"}));
     expect_sound(loaded);
     EXPECT_EQ(loaded.report.needles, 1U);
     // The area is 5e-7 m², with vertices exact to 1e-12 of the room.
@@ -175,7 +177,8 @@ TEST(BuildScene, needles_stay_and_are_counted)
 
 TEST(BuildScene, a_flush_emitter_wins_over_the_ceiling_it_lies_in)
 {
-    const auto polygons = with(box({0, 0, 0}, {4, 4, 3}, true), rectangle({1, 1, 3}, {0, 1, 0}, {1, 0, 0}, "lamp", "lamp"));
+    const auto polygons =
+        with(box({0, 0, 0}, {4, 4, 3}, true), rectangle({1, 1, 3}, {0, 1, 0}, {1, 0, 0}, "lamp", "lamp"));
     const LoadedScene loaded = load(polygons);
     expect_sound(loaded);
     EXPECT_EQ(loaded.report.coplanar_overlaps, 1U);
@@ -287,7 +290,8 @@ TEST(BuildScene, holes_that_touch_the_border_in_a_vertex_are_loops_of_their_own)
     // A frame of 8 squares round a hole, and a diamond cut whose corner touches the outer edge.
     const std::vector<Polygon> pieces = {{{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}, "red"},
                                          {{{2, 0, 0}, {4, 0, 0}, {4, 3, 0}, {3, 3, 0}, {3, 1, 0}}, "red"},
-                                         {{{0, 3, 0}, {1, 3, 0}, {3, 3, 0}, {4, 3, 0}, {4, 4, 0}, {0, 4, 0}}, "red"}, lamp_above};
+                                         {{{0, 3, 0}, {1, 3, 0}, {3, 3, 0}, {4, 3, 0}, {4, 4, 0}, {0, 4, 0}}, "red"},
+                                         lamp_above};
     const LoadedScene loaded = load(pieces);
     expect_sound(loaded);
     ASSERT_EQ(count_of(loaded.scene, "red"), 1U);
@@ -350,7 +354,8 @@ TEST(BuildScene, units_scale_the_file_and_coordinates_are_recentred)
 
 TEST(BuildScene, axis_aligned_planes_have_axes_for_frames)
 {
-    for (const Surface& surface : load(triangulated(room_with_lamp()), {}, [](const Vec3& p) { return p * 0.3; }).scene.surfaces) {
+    for (const Surface& surface :
+         load(triangulated(room_with_lamp()), {}, [](const Vec3& p) { return p * 0.3; }).scene.surfaces) {
         for (const Vec3& axis : {surface.frame.u, surface.frame.v, surface.frame.n}) {
             EXPECT_EQ(std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z), 1.0);
         }
@@ -387,7 +392,8 @@ TEST(BuildScene, five_thousand_polygons_are_read_in_near_linear_time)
     std::vector<Polygon> polygons = room_with_lamp();
     for (int i = 0; i < 30; ++i) {
         for (int k = 0; k < 33; ++k) {
-            auto block = box({0.05 + 0.12 * i, 0.05 + 0.11 * k, 0}, {0.06, 0.05, 0.1 + 0.01 * (i + k)}, false, "red", "block");
+            auto block =
+                box({0.05 + 0.12 * i, 0.05 + 0.11 * k, 0}, {0.06, 0.05, 0.1 + 0.01 * (i + k)}, false, "red", "block");
             block.erase(block.begin());
             polygons = with(std::move(polygons), block);
         }

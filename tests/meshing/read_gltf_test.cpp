@@ -41,26 +41,29 @@ std::string bytes_of(const std::vector<T>& values)
 }
 
 /// A lamp of 2 × 2 m in the plane z = 0, front up.
-const std::string square_bytes = bytes_of<float>({0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0}) + bytes_of<std::uint16_t>({0, 1, 2, 0, 2, 3});
+const std::string square_bytes =
+    bytes_of<float>({0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0}) + bytes_of<std::uint16_t>({0, 1, 2, 0, 2, 3});
 
 json square_document()
 {
-    return {{"asset", {{"version", "2.0"}}},
-            {"scene", 0},
-            {"scenes", {{{"nodes", {0}}}}},
-            {"nodes", {{{"name", "square"}, {"mesh", 0}}}},
-            {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}, {"material", 0}}}}}}},
-            {"materials",
-             {{{"name", "glow"},
-               {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}}},
-               {"emissiveFactor", {1, 0.5, 0.25}},
-               {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}}}},
-            {"accessors",
-             {{{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
-              {{"bufferView", 1}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}}},
-            {"bufferViews",
-             {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 48}}, {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}}},
-            {"buffers", {{{"byteLength", 60}, {"uri", "data:application/octet-stream;base64," + base64(square_bytes)}}}}};
+    return {
+        {"asset", {{"version", "2.0"}}},
+        {"scene", 0},
+        {"scenes", {{{"nodes", {0}}}}},
+        {"nodes", {{{"name", "square"}, {"mesh", 0}}}},
+        {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}, {"material", 0}}}}}}},
+        {"materials",
+         {{{"name", "glow"},
+           {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}}},
+           {"emissiveFactor", {1, 0.5, 0.25}},
+           {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}}}},
+        {"accessors",
+         {{{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
+          {{"bufferView", 1}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}}},
+        {"bufferViews",
+         {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 48}},
+          {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}}},
+        {"buffers", {{{"byteLength", 60}, {"uri", "data:application/octet-stream;base64," + base64(square_bytes)}}}}};
 }
 
 LoadedScene read_document(const json& document, const SceneOptions& options = {})
@@ -133,8 +136,9 @@ TEST(ReadGltf, nodes_place_their_meshes)
     json document = square_document();
     const double half = std::sqrt(0.5);
     // Scaled by (2, 1, 1), turned by 90° about x (z becomes −y), moved; then the child by a matrix.
-    document["nodes"] = {{{"children", {1}}, {"translation", {10, 20, 30}}, {"rotation", {half, 0, 0, half}}, {"scale", {2, 1, 1}}},
-                         {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 0, 1}}}};
+    document["nodes"] = {
+        {{"children", {1}}, {"translation", {10, 20, 30}}, {"rotation", {half, 0, 0, half}}, {"scale", {2, 1, 1}}},
+        {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 0, 1}}}};
     const LoadedScene loaded = read_document(document);
     EXPECT_NEAR(loaded.scene.surfaces[0].area, 8, 1e-12);
     EXPECT_NEAR(glm::distance(normal_of(loaded), Vec3{0, -1, 0}), 0, 1e-14);
@@ -154,8 +158,11 @@ TEST(ReadGltf, a_mirrored_node_keeps_the_front_in_front)
 TEST(ReadGltf, cameras_are_views)
 {
     json document = square_document();
-    document["cameras"] = {{{"type", "perspective"}, {"name", "front"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}, {"aspectRatio", 1.5}}}},
-                           {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 0.1}}}}};
+    document["cameras"] = {
+        {{"type", "perspective"},
+         {"name", "front"},
+         {"perspective", {{"yfov", 0.7}, {"znear", 0.1}, {"aspectRatio", 1.5}}}},
+        {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 0.1}}}}};
     document["nodes"].push_back({{"camera", 0}, {"translation", {1, 1, 8}}});
     document["nodes"].push_back({{"camera", 1}, {"name", "flat"}});
     document["scenes"][0]["nodes"] = {0, 1, 2};
@@ -274,20 +281,24 @@ TEST(ReadGltf, files_that_lie_are_refused_at_once)
         change(changed);
         return error_of_document(changed);
     };
-    EXPECT_THAT(broken([](json& d) { d["accessors"][0]["count"] = 4'000'000'000U; }), HasSubstr("claims 4000000000 elements"));
+    EXPECT_THAT(broken([](json& d) { d["accessors"][0]["count"] = 4'000'000'000U; }),
+                HasSubstr("claims 4000000000 elements"));
     EXPECT_THAT(broken([](json& d) { d["accessors"][1]["count"] = 7; }), HasSubstr("accessor 1 claims 7 elements"));
     EXPECT_THAT(broken([](json& d) { d["accessors"][0]["byteOffset"] = 4; }), HasSubstr("accessor 0 claims"));
     EXPECT_THAT(broken([](json& d) { d["accessors"][0]["type"] = "VEC2"; }), StartsWith("gltf: "));
     EXPECT_THAT(broken([](json& d) { d["accessors"][0]["bufferView"] = 9; }), StartsWith("gltf: "));
-    EXPECT_THAT(broken([](json& d) { d["bufferViews"][0]["byteLength"] = 4'000'000'000U; }), HasSubstr("ends past its buffer"));
+    EXPECT_THAT(broken([](json& d) { d["bufferViews"][0]["byteLength"] = 4'000'000'000U; }),
+                HasSubstr("ends past its buffer"));
     EXPECT_THAT(broken([](json& d) { d["bufferViews"][0]["buffer"] = 3; }), HasSubstr("buffer 3 of 1"));
     EXPECT_THAT(broken([](json& d) { d["buffers"][0]["byteLength"] = 4'000'000'000U; }), StartsWith("gltf: "));
-    EXPECT_THAT(broken([](json& d) { d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 77; }), StartsWith("gltf: "));
+    EXPECT_THAT(broken([](json& d) { d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 77; }),
+                StartsWith("gltf: "));
     EXPECT_THAT(broken([](json& d) { d["meshes"][0]["primitives"][0]["material"] = 5; }), HasSubstr("material 5 of 1"));
     EXPECT_THAT(broken([](json& d) { d["nodes"][0]["mesh"] = 5; }), StartsWith("gltf: "));
     EXPECT_THAT(broken([](json& d) { d["scenes"][0]["nodes"] = {5}; }), StartsWith("gltf: "));
     EXPECT_THAT(broken([](json& d) { d["asset"]["version"] = "1.0"; }), HasSubstr("version 1.0"));
-    EXPECT_THAT(broken([](json& d) { d["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }), HasSubstr("KHR_draco"));
+    EXPECT_THAT(broken([](json& d) { d["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
+                HasSubstr("KHR_draco"));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     EXPECT_LT(seconds, 5) << "some 200 files: each is refused in a few milliseconds";
 }
@@ -299,7 +310,8 @@ TEST(ReadGltf, indices_past_the_end_and_bad_coordinates)
     const auto put = [&] { document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(bytes); };
     bytes[48 + 4] = 99;
     put();
-    EXPECT_EQ(error_of_document(document), "index: scene.gltf: mesh 0 (), primitive 0: index 2 refers to vertex 99 of 4");
+    EXPECT_EQ(error_of_document(document),
+              "index: scene.gltf: mesh 0 (), primitive 0: index 2 refers to vertex 99 of 4");
     bytes = square_bytes;
     const float bad = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(bytes.data() + 4, &bad, 4);
@@ -331,7 +343,8 @@ TEST(ReadGltf, deep_nesting_and_rubbish_are_refused)
     EXPECT_THAT(error_of_text(""), HasSubstr("not a glTF file"));
     const std::string good = square_document().dump();
     EXPECT_THAT(error_of_text(good.substr(0, good.size() / 2)), StartsWith("gltf: scene.gltf: not a glTF file"));
-    EXPECT_THAT(error_of_text("{\"asset\":{\"version\":\"2.0\"},\"buffers\":7}"), HasSubstr("\"buffers\" is not an array"));
+    EXPECT_THAT(error_of_text("{\"asset\":{\"version\":\"2.0\"},\"buffers\":7}"),
+                HasSubstr("\"buffers\" is not an array"));
 }
 
 TEST(ReadGltf, changed_bytes_end_in_an_error_not_in_a_crash)
@@ -348,8 +361,7 @@ TEST(ReadGltf, changed_bytes_end_in_an_error_not_in_a_crash)
         try {
             expect_sound(read_scene(folder.write("scene.glb", bytes)));
             ++read;
-        } catch (const SceneError&) {
-        }
+        } catch (const SceneError&) {}
     }
     EXPECT_GT(read, 0) << "some changes do no harm";
 }
@@ -362,8 +374,9 @@ TEST(ReadGltf, buffers_and_images_outside_the_folder_are_never_opened)
     std::filesystem::create_symlink(outside.path() / "secret.bin", folder.path() / "link.bin");
     const std::string up = "../" + outside.path().filename().string() + "/secret.bin";
     const std::string encoded = "%2e%2e/" + outside.path().filename().string() + "/secret.bin";
-    for (const std::string& uri : {up, encoded, (outside.path() / "secret.bin").string(), std::string("link.bin"),
-                                   "file://" + (outside.path() / "secret.bin").string(), std::string("https://host/secret.bin")}) {
+    for (const std::string& uri :
+         {up, encoded, (outside.path() / "secret.bin").string(), std::string("link.bin"),
+          "file://" + (outside.path() / "secret.bin").string(), std::string("https://host/secret.bin")}) {
         json document = square_document();
         // A second square whose buffer lies outside: it is left out, the first is read.
         document["buffers"].push_back({{"byteLength", 60}, {"uri", uri}});
@@ -377,7 +390,8 @@ TEST(ReadGltf, buffers_and_images_outside_the_folder_are_never_opened)
         document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
         const LoadedScene loaded = read_scene(folder.write("scene.gltf", document.dump()));
         EXPECT_EQ(loaded.scene.surfaces.size(), 1U) << uri;
-        EXPECT_THAT(loaded.report.warnings, Contains(HasSubstr("is outside the scene's folder and was not opened"))) << uri;
+        EXPECT_THAT(loaded.report.warnings, Contains(HasSubstr("is outside the scene's folder and was not opened")))
+            << uri;
         EXPECT_THAT(loaded.report.warnings, Contains(HasSubstr("base colour texture is ignored"))) << uri;
         EXPECT_EQ(loaded.scene.materials[0].reflectance, (Rgb{0.5, 0.25, 0.125})) << uri;
     }

@@ -15,7 +15,8 @@ namespace {
 
 const std::string square = "mtllib scene.mtl\nusemtl lamp\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-std::string error_of_obj(const std::string& obj, const SceneOptions& options = {}, const std::string& mtl = three_materials)
+std::string error_of_obj(const std::string& obj, const SceneOptions& options = {},
+                         const std::string& mtl = three_materials)
 {
     return error_of([&] { read_text(obj, options, mtl); });
 }
@@ -38,7 +39,8 @@ TEST(ReadObj, files_that_are_not_there_or_no_files)
     std::filesystem::create_directory(in("folder.obj"));
     EXPECT_THAT(error_of([&] { read_scene(in("folder.obj")); }), MatchesRegex("file: .*folder.obj: is a folder"));
     folder.write("scene.xyz", "v 0 0 0");
-    EXPECT_THAT(error_of([&] { read_scene(in("scene.xyz")); }), MatchesRegex("format: .*scene.xyz: unknown format .xyz.*"));
+    EXPECT_THAT(error_of([&] { read_scene(in("scene.xyz")); }),
+                MatchesRegex("format: .*scene.xyz: unknown format .xyz.*"));
     EXPECT_THAT(error_of([&] { read_scene("/dev/null/x.obj"); }), StartsWith("file: "));
     std::filesystem::create_symlink("/dev/zero", in("endless.obj"));
     EXPECT_THAT(error_of([&] { read_scene(in("endless.obj")); }), HasSubstr("is not a regular file"));
@@ -61,7 +63,8 @@ TEST(ReadObj, indices_must_exist)
     EXPECT_EQ(error_of_obj(square + "f 1 2 99\n"), "index: scene.obj:7: face refers to vertex 99 of 4");
     EXPECT_EQ(error_of_obj(square + "\nf 1 2 3\nf 0 1 2\n"), "index: scene.obj:9: face refers to vertex 0 of 4");
     EXPECT_EQ(error_of_obj(square + "f 1 2 -5\n"), "index: scene.obj:7: face refers to vertex -5 of 4");
-    EXPECT_THAT(error_of_obj(square + "f 1 2 4294967299\n"), StartsWith("index: scene.obj:7: face refers to vertex 4294967299"));
+    EXPECT_THAT(error_of_obj(square + "f 1 2 4294967299\n"),
+                StartsWith("index: scene.obj:7: face refers to vertex 4294967299"));
     EXPECT_THAT(error_of_obj(square + "f 1 2 three\n"), StartsWith("index: scene.obj:7: face refers to vertex three"));
     EXPECT_EQ(read_text(square + "f -4 -3 -2 -1\n").scene.surfaces.size(), 1U);
     EXPECT_EQ(read_text(square + "f 1/7/9 2//9 3/7 4\n").scene.surfaces.size(), 1U);
@@ -70,16 +73,32 @@ TEST(ReadObj, indices_must_exist)
 TEST(ReadObj, coordinates_must_be_finite_where_they_are_used)
 {
     for (const std::string bad : {"nan 0 1", "0 inf 1", "0 0 1e999", "0 0", "0 0 zero", "-infinity 0 0", "0x1 0 0"}) {
-        EXPECT_EQ(error_of_obj(square + "v " + bad + "\nf 1 2 5\n"), "nonfinite: scene.obj:7: vertex 5 is not finite") << bad;
+        EXPECT_EQ(error_of_obj(square + "v " + bad + "\nf 1 2 5\n"), "nonfinite: scene.obj:7: vertex 5 is not finite")
+            << bad;
         const LoadedScene unused = read_text(square + "v " + bad + "\nf 1 2 3\n");
-        EXPECT_THAT(unused.report.warnings, Contains("scene.obj:7: vertex 5 is not finite, but no face uses it")) << bad;
+        EXPECT_THAT(unused.report.warnings, Contains("scene.obj:7: vertex 5 is not finite, but no face uses it"))
+            << bad;
     }
     EXPECT_EQ(read_text(square + "v 1e-999 +.5 -1.e0\nf 1 2 5\n").scene.surfaces.size(), 1U);
 }
 
+TEST(ReadObj, scenes_too_large_or_small_for_arithmetic_are_refused)
+{
+    const auto square_of = [](const std::string& side) {
+        return "usemtl lamp\nmtllib scene.mtl\nv 0 0 0\nv " + side + " 0 0\nv " + side + " " + side + " 0\nf 1 2 3\n";
+    };
+    EXPECT_THAT(error_of_obj(square_of("1e200")),
+                MatchesRegex("nonfinite: scene.obj: the scene is .* across, which is too large"));
+    EXPECT_THAT(error_of_obj(square_of("1e308")), StartsWith("nonfinite: "));
+    EXPECT_THAT(error_of_obj(square_of("1e-200")), StartsWith("zeroarea: "));
+    EXPECT_EQ(error_of_obj(square_of("1e-30")), "no error");
+    EXPECT_EQ(error_of_obj(square_of("1e30")), "no error");
+}
+
 TEST(ReadObj, numbers_are_read_to_the_last_bit)
 {
-    const LoadedScene loaded = read_text("mtllib scene.mtl\nusemtl lamp\nv 0 0 0\nv 0.123456789012345678 0 0\nv 0 0.5488 0\nf 1 2 3\n");
+    const LoadedScene loaded =
+        read_text("mtllib scene.mtl\nusemtl lamp\nv 0 0 0\nv 0.123456789012345678 0 0\nv 0 0.5488 0\nf 1 2 3\n");
     EXPECT_EQ(loaded.scene.center.x, 0.5 * 0.123456789012345678);
     EXPECT_EQ(loaded.scene.center.y, 0.5 * 0.5488);
 }
@@ -87,7 +106,8 @@ TEST(ReadObj, numbers_are_read_to_the_last_bit)
 TEST(ReadObj, line_numbers_survive_continued_lines_and_line_ends)
 {
     EXPECT_EQ(error_of_obj(square + "f 1 \\\n 2 3\nf 1 2 9\n"), "index: scene.obj:9: face refers to vertex 9 of 4");
-    EXPECT_EQ(error_of_obj("v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 9\r\n"), "index: scene.obj:4: face refers to vertex 9 of 3");
+    EXPECT_EQ(error_of_obj("v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 9\r\n"),
+              "index: scene.obj:4: face refers to vertex 9 of 3");
     EXPECT_EQ(error_of_obj("v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 9\r"), "index: scene.obj:4: face refers to vertex 9 of 3");
     EXPECT_EQ(read_text("\xEF\xBB\xBF" + square + "f 1 2 \\\n 3 4").scene.surfaces.size(), 1U);
 }
@@ -95,7 +115,8 @@ TEST(ReadObj, line_numbers_survive_continued_lines_and_line_ends)
 TEST(ReadObj, reflectances_outside_the_range_name_the_material)
 {
     const auto with_Kd = [&](const std::string& Kd) {
-        return error_of_obj(square + "f 1 2 3\nusemtl odd\nf 1 3 4\n", {}, three_materials + "newmtl odd\nKd " + Kd + "\n");
+        return error_of_obj(square + "f 1 2 3\nusemtl odd\nf 1 3 4\n", {},
+                            three_materials + "newmtl odd\nKd " + Kd + "\n");
     };
     EXPECT_THAT(with_Kd("1.2 .5 .5"), MatchesRegex("material: scene.obj: material odd: reflectance 1.2 is not in .*"));
     EXPECT_THAT(with_Kd(".5 -0.1 .5"), HasSubstr("material odd: reflectance -0.1"));
@@ -125,7 +146,8 @@ TEST(ReadObj, options_name_emitters_and_two_sided_materials)
 {
     SceneOptions options;
     options.emitters["white"] = {5, 6, 7};
-    EXPECT_EQ(material_named(read_text(square + "usemtl white\nf 1 2 3 4\n", options).scene, "white").emission, (Rgb{5, 6, 7}));
+    EXPECT_EQ(material_named(read_text(square + "usemtl white\nf 1 2 3 4\n", options).scene, "white").emission,
+              (Rgb{5, 6, 7}));
     options.emitters = {{"lmap", {1, 1, 1}}};
     EXPECT_EQ(error_of_obj(square + "f 1 2 3 4\n", options),
               "material: scene.obj: no material named lmap, the scene has: lamp, red, white");
@@ -162,7 +184,8 @@ TEST(ReadObj, material_files_outside_the_folder_are_never_opened)
         options.require_emitter = false;
         const LoadedScene loaded = read_scene(folder.path() / "scene.obj", options);
         EXPECT_FALSE(loaded.scene.materials[0].emits()) << name;
-        EXPECT_THAT(loaded.report.warnings, Contains(HasSubstr("outside the scene's folder and was not opened"))) << name;
+        EXPECT_THAT(loaded.report.warnings, Contains(HasSubstr("outside the scene's folder and was not opened")))
+            << name;
     }
 }
 
