@@ -1,6 +1,5 @@
 #include "apps/patchlight/scene_input.h"
 
-#include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/view_choice.h"
 #include "apps/run/file_writer.h"
 #include "apps/run/sha256.h"
@@ -8,26 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace patchlight {
-
-namespace {
-
-void check_material(const Scene& scene, const std::string& option, const std::string& name)
-{
-    const auto named = [&](const Material& m) { return m.name == name; };
-    if (std::any_of(scene.materials.begin(), scene.materials.end(), named)) {
-        return;
-    }
-    std::string known;
-    for (const Material& m : scene.materials) {
-        known += (known.empty() ? "" : ", ") + m.name;
-    }
-    throw UsageError("usage", fmt::format("{}: no surface is of a material \"{}\"; there are {}", option, name, known));
-}
-
-}  // namespace
 
 SceneInput load_scene(const SceneArguments& arguments)
 {
@@ -35,12 +15,6 @@ SceneInput load_scene(const SceneArguments& arguments)
     LoadedScene loaded = read_scene(arguments.file, arguments.options);
     input.scene = std::move(loaded.scene);
     input.report = std::move(loaded.report);
-    for (const std::string& name : arguments.options.two_sided) {
-        check_material(input.scene, "--two-sided", name);
-    }
-    for (const auto& [name, value] : arguments.options.emitters) {
-        check_material(input.scene, "--emitter", name);
-    }
     try {
         input.sha256 = sha256_hex(read_bytes(arguments.file));
     } catch (const std::runtime_error& problem) {
@@ -61,7 +35,7 @@ std::vector<std::string> first_hit_warnings(const FirstHits& hits)
                                        "the winding may be mixed, or --two-sided is wanted",
                                        100 * hits.backs));
     }
-    if (hits.emitted_escaped + hits.emitted_backs > 0.25) {
+    if (hits.emitted_escaped + hits.emitted_backs > 0.5) {
         warnings.push_back(fmt::format("{:.1f} % of the emitted flux leaves the scene and {:.1f} % meets black backs: "
                                        "an emitter may face the wrong way",
                                        100 * hits.emitted_escaped, 100 * hits.emitted_backs));

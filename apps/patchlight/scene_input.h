@@ -17,15 +17,16 @@ struct SceneInput {
     std::string sha256;  ///< of the file
 };
 
-/// Reads the scene and the cameras in STEM.view.json beside it when it has none itself. A warning of the report
-/// for each option that names no material. Throws SceneError, UsageError.
+/// Reads the scene and the cameras in STEM.view.json beside it when it has none itself. Throws SceneError,
+/// UsageError ("view").
 SceneInput load_scene(const SceneArguments& arguments);
 
 /// What the first rays say about the scene, as warnings: mixed winding, a flipped emitter.
 std::vector<std::string> first_hit_warnings(const FirstHits& hits);
 
-/// Power of a surface set, W, three bands together.
+/// W, three bands together.
 double emitted_power(const Scene& scene);
+/// m².
 double total_area(const Scene& scene);
 
 }  // namespace patchlight

@@ -32,19 +32,42 @@ bool holds_others(const std::filesystem::path& folder, const std::vector<std::st
     return false;
 }
 
+/// Makes the folder when it isn't there.
+const std::filesystem::path& made(const std::filesystem::path& folder)
+{
+    std::error_code error;
+    const auto status = std::filesystem::status(folder, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
+        throw FolderRefused(fmt::format("{} is a file; name a new folder", folder.string()));
+    }
+    FileWriter::make_folder(folder);
+    return folder;
+}
+
 }  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+{
+    if (descriptor_ < 0) {
+        throw OutputError(fmt::format("{}: {}", folder.string(), std::generic_category().message(errno)));
+    }
+    // Not every file system can lock; then two programs at once are the user's own affair.
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(descriptor_);
+        throw FolderRefused(fmt::format("{} is being written by another patchlight", folder.string()));
+    }
+}
+
+FolderLock::~FolderLock()
+{
+    ::close(descriptor_);
+}
 
 RunFolder::RunFolder(std::filesystem::path folder, RunIdentity identity, FileWriter& writer,
                      const std::vector<std::string>& also_ours)
-    : folder_(std::move(folder)), writer_(writer)
+    : folder_(std::move(folder)), writer_(writer), lock_(made(folder_))
 {
-    std::error_code error;
-    const auto status = std::filesystem::status(folder_, error);
-    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
-        throw FolderRefused(fmt::format("{} is a file; name a new folder", folder_.string()));
-    }
-    FileWriter::make_folder(folder_);
-    lock();
     FileWriter::sweep(folder_);
     take(identity, also_ours);
     record_.identity = std::move(identity);
@@ -55,27 +78,6 @@ RunFolder::RunFolder(std::filesystem::path folder, RunIdentity identity, FileWri
         record_.status = RunStatus::running;
         record_.converged = false;
         write_record();
-    }
-}
-
-RunFolder::~RunFolder()
-{
-    if (lock_ >= 0) {
-        ::close(lock_);
-    }
-}
-
-void RunFolder::lock()
-{
-    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_ < 0) {
-        throw OutputError(fmt::format("{}: {}", folder_.string(), std::generic_category().message(errno)));
-    }
-    // Not every file system can lock; then two programs at once are the user's own affair.
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        ::close(lock_);
-        lock_ = -1;
-        throw FolderRefused(fmt::format("{} is being written by another patchlight", folder_.string()));
     }
 }
 

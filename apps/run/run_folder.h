@@ -4,11 +4,8 @@
 #include "apps/run/run_record.h"
 #include "apps/run/stored_solution.h"
 
-#include <atomic>
 #include <filesystem>
-#include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +15,19 @@ namespace patchlight {
 class FolderRefused : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
+};
+
+/// Keeps other programs out of a folder while it lives. Leaves no file behind.
+class FolderLock {
+public:
+    /// Throws FolderRefused when another program holds it, OutputError when the folder can't be opened.
+    explicit FolderLock(const std::filesystem::path& folder);
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+    ~FolderLock();
+
+private:
+    int descriptor_ = -1;
 };
 
 enum class FolderState { fresh, unfinished, finished };
@@ -33,7 +43,6 @@ public:
               const std::vector<std::string>& also_ours = {});
     RunFolder(const RunFolder&) = delete;
     RunFolder& operator=(const RunFolder&) = delete;
-    ~RunFolder();
 
     FolderState state() const { return state_; }
     const std::filesystem::path& path() const { return folder_; }
@@ -63,16 +72,15 @@ private:
     void take(const RunIdentity& identity, const std::vector<std::string>& also_ours);
     void keep_whole_cycles();
     void write_record();
-    void lock();
 
     std::filesystem::path folder_;
     FileWriter& writer_;
     mutable std::mutex mutex_;
+    FolderLock lock_;
     RunRecord record_;
     Json timing_;
     FolderState state_ = FolderState::fresh;
     bool interrupted_ = false;
-    int lock_ = -1;
 };
 
 /// Deletes a finished or unfinished run's own files from its folder, and nothing else.

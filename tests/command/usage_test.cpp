@@ -1,0 +1,89 @@
+#include "tests/command/command_runner.h"
+
+#include <gmock/gmock.h>
+
+namespace patchlight::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// Each kind once through the program; arguments_test tries many more.
+class UsageTest : public CommandTest {};
+
+TEST_F(UsageTest, EndsWithTwoAndAMessageBeforeAnyFileIsLookedAt)
+{
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{}, {"verify", "run"}, {"solve", "room.obj"},
+          {"solve", "room.obj", "-o", "run", "--threads", "1e9"}, {"solve", "room.obj", "-o", "run", "--refine", "both"}}) {
+        const Outcome outcome = run(words, {.folder = folder_});
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_THAT(outcome.err, StartsWith("error[usage]: "));
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_EQ(files_in(folder_).size(), 2U) << "only what the test itself wrote down";
+    }
+}
+
+TEST_F(UsageTest, HelpShowsEveryDefault)
+{
+    const Outcome help = run({"solve", "--help"});
+    EXPECT_EQ(help.code, 0);
+    for (const char* shown : {"--refine", "=intensity", "--solver", "=gauss-seidel", "=hemisphere", "=8000",
+                              "=residual", "=doerfler", "=0.95", "=0.0001", "--unit", "=m"}) {
+        EXPECT_THAT(help.out, HasSubstr(shown));
+    }
+    std::istringstream lines(help.out);
+    for (std::string line; std::getline(lines, line);) {
+        // An option's first word, its values and its text: with a default, or required, or with [what is done without].
+        if (line.starts_with("  --") || line.starts_with("  -o")) {
+            std::string next;
+            if (line.find('[') == std::string::npos && line.find('=') == std::string::npos &&
+                line.find("REQUIRED") == std::string::npos) {
+                std::getline(lines, next);
+            }
+            const std::string whole = line + next;
+            EXPECT_TRUE(whole.find('[') != std::string::npos || whole.find('=') != std::string::npos ||
+                        whole.find("REQUIRED") != std::string::npos)
+                << whole;
+        }
+    }
+}
+
+TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
+{
+    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "export"}) {
+        const Outcome help = run({command, "--help"});
+        EXPECT_EQ(help.code, 0);
+        EXPECT_EQ(help.err, "");
+        for (const char* absent : {"hemicube", "discontinuity", "hierarchical", "vtu", "verify", "false-color", "--mesh "}) {
+            EXPECT_THAT(help.out, Not(HasSubstr(absent))) << command;
+        }
+    }
+    EXPECT_THAT(run({"--help"}).out, HasSubstr("demo"));
+    EXPECT_THAT(run({"--version"}).out, StartsWith("patchlight 0."));
+}
+
+TEST_F(UsageTest, CamerasAreCheckedToo)
+{
+    const std::string scene = write_scene();
+    EXPECT_THAT(run(small({"solve", scene, "-o", path("run"), "--view", "back"})).err, HasSubstr("the scene has front"));
+    write_text(path("bad.json"), "{\"from\": [0,0,0], \"to\": [0,0,1], \"fow\": 40}");
+    const Outcome typo = run(small({"solve", scene, "-o", path("run"), "--view", path("bad.json")}));
+    EXPECT_EQ(typo.code, 2);
+    EXPECT_THAT(typo.err, HasSubstr("unknown key \"fow\""));
+    write_text(path("room.view.json"), "{\"from\": ");
+    EXPECT_EQ(run(small({"solve", scene, "-o", path("run")})).code, 2);
+}
+
+TEST_F(UsageTest, MoreThanTheMachineHoldsIsRefusedBeforeItIsAllocated)
+{
+    const Outcome outcome = run({"solve", write_scene(), "-o", path("run"), "--max-elements", "1000000000"});
+    EXPECT_EQ(outcome.code, 5);
+    EXPECT_THAT(outcome.err, HasSubstr("error[memory]: needs "));
+    EXPECT_EQ(run({"solve", write_scene(), "-o", path("run"), "--refine", "none", "--max-edge", "1e-6"}).code, 5);
+    EXPECT_FALSE(std::filesystem::exists(path("run")));
+}
+
+}  // namespace
+}  // namespace patchlight::testing
