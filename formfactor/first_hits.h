@@ -15,7 +15,8 @@ struct FirstHits {
     double emitted_escaped = 0;  ///< of the emitted power: nothing (a flipped emitter shows here)
 };
 
-/// Traces about `rays` rays from all surfaces and as many from the emitters.
+/// Covered points, whose every ray meets a back, are left out. Traces about `rays` rays from all surfaces and as many
+/// from the emitters.
 FirstHits sample_first_hits(const Scene& scene, const RayCaster& caster, int rays = 65536, std::uint64_t seed = 1);
 
 }  // namespace patchlight

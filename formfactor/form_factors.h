@@ -13,17 +13,18 @@ enum class FormFactorMethod { hemisphere };
 
 /// The set of directions over the hemisphere.
 enum class HemisphereDirections {
-    stratified,    ///< cosine-weighted, one a stratum, seeded: ΔF = 1/n each
+    stratified,  ///< cosine-weighted, one a stratum, seeded: ΔF = 1/n each
     regular_grid,  ///< the lecture's: Δφ = Δθ = 2π/k, ring m at its middle, weighed exactly by sin² of its borders / k
-    lecture_grid   ///< the same directions with the lecture's ΔF = (2π/k²) sin 2θ, which sums to Δθ·cot Δθ
+    lecture_grid  ///< the same directions with the lecture's ΔF = (2π/k²) sin 2θ, which sums to Δθ·cot Δθ
 };
 
 struct FormFactorOptions {
     FormFactorMethod method = FormFactorMethod::hemisphere;
     HemisphereDirections directions = HemisphereDirections::stratified;
-    int rays = 512;              ///< per patch, 16 … 65536; rounded up to what the directions allow
-    int shadow_rays = 16;        ///< per patch and small source, 4 … 4096
-    double small_source = 0.2;   ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
+    int rays = 512;        ///< per patch, 16 … 65536; rounded up to what the directions allow
+    int shadow_rays = 16;  ///< per patch and small source, 4 … 4096
+    double small_source =
+        0.2;  ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
     std::uint64_t seed = 1;
 };
 
@@ -31,9 +32,9 @@ struct FormFactorOptions {
 struct FormFactorRow {
     std::vector<PatchId> patches;
     std::vector<double> factors;
-    double raw_sum = 0;   ///< before small sources were seen by Lambert's formula
-    double escaped = 0;   ///< fraction that meets no surface
-    double backs = 0;     ///< fraction that meets a black back
+    double raw_sum = 0;  ///< before small sources were seen by Lambert's formula
+    double escaped = 0;  ///< fraction that meets no surface
+    double backs = 0;    ///< fraction that meets a black back
 };
 
 /// Rows of F, compressed. Not reciprocal: sampled rows only gather.

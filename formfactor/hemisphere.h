@@ -11,10 +11,10 @@ namespace patchlight {
 /// stratified place on the unit right triangle (barycentric coordinates) to start from. Several independent sets
 /// are made at once; a patch picks one and turns it about its normal, so that no two patches share their error.
 struct HemisphereSet {
-    std::vector<float> x, y, z;      ///< unit directions, neighbours similar
-    std::vector<float> factor;       ///< ΔF of each
-    std::vector<float> b0, b1;       ///< barycentric coordinates of the origin
-    double sum = 0;                  ///< Σ ΔF: 1, but for the lecture's rule
+    std::vector<float> x, y, z;  ///< unit directions, neighbours similar
+    std::vector<float> factor;   ///< ΔF of each
+    std::vector<float> b0, b1;   ///< barycentric coordinates of the origin
+    double sum = 0;              ///< Σ ΔF: 1, but for the lecture's rule
 
     std::size_t size() const { return x.size(); }
 };

@@ -30,8 +30,10 @@ double lambert_factor(const Vec3& p, const Vec3& n, std::span<const Vec3> polygo
     bool any = false;
     Vec3 first(0.0), last(0.0);
     const auto emit = [&](const Vec3& r) {
-        if (any) sum += edge_term(last, r, n);
-        else first = r;
+        if (any)
+            sum += edge_term(last, r, n);
+        else
+            first = r;
         last = r;
         any = true;
     };

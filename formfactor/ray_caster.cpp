@@ -34,8 +34,8 @@ PlaneSide side_of(const Scene& scene, const SceneTriangle& triangle, SurfaceId s
     std::array<Vec2, 3> p;
     for (std::size_t k = 0; k < 3; ++k) p[k] = frame.to_plane(scene.vertices[triangle.vertices[k]]);
     const auto f = [](double x) { return static_cast<float>(x); };
-    return {f(p[0].x), f(p[0].y), f(p[1].x - p[0].x), f(p[1].y - p[0].y), f(p[2].x - p[0].x), f(p[2].y - p[0].y),
-            surface.value};
+    return {f(p[0].x),          f(p[0].y),          f(p[1].x - p[0].x), f(p[1].y - p[0].y),
+            f(p[2].x - p[0].x), f(p[2].y - p[0].y), surface.value};
 }
 
 }  // namespace
@@ -82,13 +82,14 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
     rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
 
     RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.vertices.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), scene.vertices.size()));
     auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), scene.triangles.size()));
     if (vertices == nullptr || triangles == nullptr) throw std::bad_alloc();
     for (std::size_t v = 0; v < scene.vertices.size(); ++v)
-        for (int k = 0; k < 3; ++k) vertices[3 * v + static_cast<std::size_t>(k)] = static_cast<float>(scene.vertices[v][k]);
+        for (int k = 0; k < 3; ++k)
+            vertices[3 * v + static_cast<std::size_t>(k)] = static_cast<float>(scene.vertices[v][k]);
     impl_->sides.reserve(scene.triangles.size());
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
         const SceneTriangle& triangle = scene.triangles[t];
@@ -99,14 +100,18 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
     rtcAttachGeometry(impl_->scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(impl_->scene);
-    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build the scene");
+    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree could not build the scene");
 }
 
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 RayCaster::~RayCaster() = default;
 
-std::string RayCaster::instruction_set() const { return impl_->isa; }
+std::string RayCaster::instruction_set() const
+{
+    return impl_->isa;
+}
 
 void RayCaster::closest(const RayBatch& rays, HitBatch& hits) const
 {
@@ -141,8 +146,9 @@ void RayCaster::closest(const RayBatch& rays, HitBatch& hits) const
             std::uint32_t surface = HitBatch::escaped;
             float x = 0, y = 0;
             if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
-                const float facing = packet.hit.Ng_x[k] * packet.ray.dir_x[k] + packet.hit.Ng_y[k] * packet.ray.dir_y[k]
-                    + packet.hit.Ng_z[k] * packet.ray.dir_z[k];
+                const float facing = packet.hit.Ng_x[k] * packet.ray.dir_x[k] +
+                                     packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
+                                     packet.hit.Ng_z[k] * packet.ray.dir_z[k];
                 const PlaneSide& side = impl_->sides[packet.hit.primID[k]][facing < 0 ? 0 : 1];
                 surface = side.surface;
                 x = side.x0 + packet.hit.u[k] * side.x1 + packet.hit.v[k] * side.x2;
@@ -181,8 +187,7 @@ void RayCaster::occluded(const RayBatch& rays, std::vector<std::uint8_t>& blocke
             valid[k] = first + k < n ? -1 : 0;
         }
         rtcOccluded8(valid.data(), impl_->scene, &context, &packet);
-        for (std::size_t k = 0; k < width && first + k < n; ++k)
-            blocked[first + k] = packet.tfar[k] < 0 ? 1 : 0;
+        for (std::size_t k = 0; k < width && first + k < n; ++k) blocked[first + k] = packet.tfar[k] < 0 ? 1 : 0;
     }
 }
 

@@ -29,7 +29,7 @@ private:
 /// What a ray met first. `surface` is the surface whose front was hit, or one of the two values below;
 /// x, y are the plane coordinates of the hit in that surface's frame.
 struct HitBatch {
-    static constexpr std::uint32_t escaped = 0xffffffffU;  ///< met nothing
+    static constexpr std::uint32_t escaped = 0xffffffffU;     ///< met nothing
     static constexpr std::uint32_t black_back = 0xfffffffeU;  ///< met the back of a one-sided surface
 
     std::vector<std::uint32_t> surface;

@@ -17,11 +17,11 @@ struct RowScratch {
     std::vector<float> weight;           ///< per patch, 0 between rows
     std::vector<std::uint32_t> touched;  ///< patches with weight
     std::vector<ReceiverPoint> receivers;
-    std::vector<std::pair<std::size_t, double>> small;   ///< sources to swap, and their unoccluded factors
-    std::vector<std::uint8_t> is_swapped;  ///< per surface, 0 between rows
+    std::vector<std::pair<std::size_t, double>> small;  ///< sources to swap, and their unoccluded factors
+    std::vector<std::uint8_t> is_swapped;               ///< per surface, 0 between rows
     ShadowScratch shadow;
-    FormFactorRow row;                   ///< the result
-    std::size_t traced = 0;              ///< rays since the scratch was made
+    FormFactorRow row;       ///< the result
+    std::size_t traced = 0;  ///< rays since the scratch was made
 };
 
 /// Rows of form factors by rays over the hemisphere, with small sources seen by Lambert's formula. What swapped

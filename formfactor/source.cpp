@@ -75,8 +75,10 @@ double Source::unoccluded(const Vec3& p, const Vec3& n) const
 
 Vec3 Source::point(double u, double v) const
 {
-    if (parallelogram_) return pieces_[0][0] + u * (pieces_[0][1] - pieces_[0][0]) + v * (pieces_[0][3] - pieces_[0][0]);
-    const auto found = std::find_if(triangles_.begin(), triangles_.end() - 1, [&](const Triangle& t) { return u < t.until; });
+    if (parallelogram_)
+        return pieces_[0][0] + u * (pieces_[0][1] - pieces_[0][0]) + v * (pieces_[0][3] - pieces_[0][0]);
+    const auto found =
+        std::find_if(triangles_.begin(), triangles_.end() - 1, [&](const Triangle& t) { return u < t.until; });
     const double from = found == triangles_.begin() ? 0 : std::prev(found)->until;
     const double within = std::clamp((u - from) / (found->until - from), 0.0, 1.0);
     const double root = std::sqrt(within);

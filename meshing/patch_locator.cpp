@@ -43,8 +43,15 @@ PatchLocator::Entry PatchLocator::make_entry(std::uint32_t patch) const
     const auto c_at = [&](double a, double b) { return static_cast<float>(a * (x0 - p2.x) + b * (y0 - p2.y)); };
     const double a0 = (p1.y - p2.y) * scale, b0 = (p2.x - p1.x) * scale;
     const double a1 = (p2.y - p0.y) * scale, b1 = (p0.x - p2.x) * scale;
-    return {x0, y0, static_cast<float>(a0), static_cast<float>(b0), c_at(a0, b0), static_cast<float>(a1),
-            static_cast<float>(b1), c_at(a1, b1), patch};
+    return {x0,
+            y0,
+            static_cast<float>(a0),
+            static_cast<float>(b0),
+            c_at(a0, b0),
+            static_cast<float>(a1),
+            static_cast<float>(b1),
+            c_at(a1, b1),
+            patch};
 }
 
 bool PatchLocator::overlaps(std::uint32_t patch, const Box& box) const
@@ -84,7 +91,8 @@ std::uint32_t PatchLocator::build_grid(const Box& box, const std::vector<std::ui
         const float x = box.x0 + static_cast<float>(ix) * dx, y = box.y0 + static_cast<float>(iy) * dy;
         return Box{x - 0.01F * dx, y - 0.01F * dy, x + 1.01F * dx, y + 1.01F * dy};
     };
-    std::vector<std::vector<std::uint32_t>> lists(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
+    std::vector<std::vector<std::uint32_t>> lists(static_cast<std::size_t>(grid.nx) *
+                                                  static_cast<std::size_t>(grid.ny));
     for (const std::uint32_t patch : patches) {
         Vec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
         for (const VertexId v : mesh_->corners(PatchId(patch))) {
@@ -94,11 +102,14 @@ std::uint32_t PatchLocator::build_grid(const Box& box, const std::vector<std::ui
         const auto cell_at = [](double x, double x0, double cell, int n) {
             return static_cast<int>(std::clamp(std::floor((x - x0) / cell), 0.0, static_cast<double>(n - 1)));
         };
-        const int ix0 = cell_at(low.x - 0.02 * dx, box.x0, dx, grid.nx), ix1 = cell_at(high.x + 0.02 * dx, box.x0, dx, grid.nx);
-        const int iy0 = cell_at(low.y - 0.02 * dy, box.y0, dy, grid.ny), iy1 = cell_at(high.y + 0.02 * dy, box.y0, dy, grid.ny);
+        const int ix0 = cell_at(low.x - 0.02 * dx, box.x0, dx, grid.nx),
+                  ix1 = cell_at(high.x + 0.02 * dx, box.x0, dx, grid.nx);
+        const int iy0 = cell_at(low.y - 0.02 * dy, box.y0, dy, grid.ny),
+                  iy1 = cell_at(high.y + 0.02 * dy, box.y0, dy, grid.ny);
         for (int iy = iy0; iy <= iy1; ++iy)
             for (int ix = ix0; ix <= ix1; ++ix)
-                if (overlaps(patch, cell_box(ix, iy))) lists[static_cast<std::size_t>(iy * grid.nx + ix)].push_back(patch);
+                if (overlaps(patch, cell_box(ix, iy)))
+                    lists[static_cast<std::size_t>(iy * grid.nx + ix)].push_back(patch);
     }
     for (std::size_t i = 0; i < lists.size(); ++i) {
         const auto& list = lists[i];

@@ -37,7 +37,8 @@ private:
     struct Cell {
         std::uint32_t first = 0, count = 0;
     };
-    /// Two barycentric coordinates as functions of the plane: w = a·(x − x0) + b·(y − y0) + c; the third is 1 less both.
+    /// Two barycentric coordinates as functions of the plane: w = a·(x − x0) + b·(y − y0) + c; the third is 1 less
+    /// both.
     struct Entry {
         float x0, y0, a0, b0, c0, a1, b1, c1;
         std::uint32_t patch;

@@ -29,8 +29,8 @@ std::vector<IdRange<IdType>> ranges_by_surface(const std::vector<SurfaceId>& sur
 
 void check_triangles(const PatchMeshArrays& arrays)
 {
-    if (arrays.patch_surface.size() != arrays.triangles.size()
-        || arrays.vertex_surface.size() != arrays.positions.size())
+    if (arrays.patch_surface.size() != arrays.triangles.size() ||
+        arrays.vertex_surface.size() != arrays.positions.size())
         throw std::invalid_argument("patch mesh: one surface is needed for each patch and vertex");
     for (std::size_t t = 0; t < arrays.triangles.size(); ++t)
         for (const std::uint32_t v : arrays.triangles[t])

@@ -33,10 +33,10 @@ struct IdRange {
 
 /// What a PatchMesh is made from. Vertices and patches are in order of their surface.
 struct PatchMeshArrays {
-    std::vector<Vec3> positions;                         ///< metres, recentred
+    std::vector<Vec3> positions;                          ///< metres, recentred
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the surface's front
-    std::vector<SurfaceId> patch_surface;                ///< non-decreasing
-    std::vector<SurfaceId> vertex_surface;               ///< non-decreasing
+    std::vector<SurfaceId> patch_surface;                 ///< non-decreasing
+    std::vector<SurfaceId> vertex_surface;                ///< non-decreasing
 };
 
 /// The patch mesh: triangles over the scene's surfaces, conforming within a surface; across surfaces vertices

@@ -7,9 +7,18 @@
 // What OpenMesh asks of a vector type and GLM doesn't have; argument-dependent look-up finds it only here.
 namespace glm {
 
-inline double sqrnorm(const dvec3& x) { return dot(x, x); }
-inline double norm(const dvec3& x) { return length(x); }
-inline dvec3& vectorize(dvec3& x, double value) { return x = dvec3(value); }
+inline double sqrnorm(const dvec3& x)
+{
+    return dot(x, x);
+}
+inline double norm(const dvec3& x)
+{
+    return length(x);
+}
+inline dvec3& vectorize(dvec3& x, double value)
+{
+    return x = dvec3(value);
+}
 
 }  // namespace glm
 

@@ -41,8 +41,8 @@ std::vector<PatchTransfer::Overlap> overlaps_of(const PatchMesh& old_mesh, const
 {
     const auto triangle = flat(new_mesh, patch);
     const Vec2 middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-    std::vector<PatchId> walk{locator.locate(new_mesh.surface(patch), static_cast<float>(middle.x),
-                                             static_cast<float>(middle.y))};
+    std::vector<PatchId> walk{
+        locator.locate(new_mesh.surface(patch), static_cast<float>(middle.x), static_cast<float>(middle.y))};
     std::vector<PatchTransfer::Overlap> found;
     double covered = 0;
     const double area = new_mesh.area(patch);
@@ -65,9 +65,8 @@ std::vector<PatchTransfer::Overlap> overlaps_of(const PatchMesh& old_mesh, const
 PatchTransfer overlap(const PatchMesh& old_mesh, const PatchLocator& old_locator, const PatchMesh& new_mesh)
 {
     std::vector<std::vector<PatchTransfer::Overlap>> rows(new_mesh.patch_count());
-    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
-        rows[i] = overlaps_of(old_mesh, old_locator, new_mesh, PatchId(i));
-    });
+    tbb::parallel_for(std::size_t{0}, rows.size(),
+                      [&](std::size_t i) { rows[i] = overlaps_of(old_mesh, old_locator, new_mesh, PatchId(i)); });
     PatchTransfer transfer;
     transfer.start.reserve(rows.size() + 1);
     for (const auto& row : rows) {

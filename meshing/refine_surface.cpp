@@ -21,17 +21,14 @@ using HalfedgeHandle = OpenMesh::HalfedgeHandle;
 /// The triangulation of one surface while it is being refined.
 class SurfaceRefinement {
 public:
-    SurfaceRefinement(const PlaneFrame& frame, SurfaceId surface, const PatchMesh& mesh, const PatchLocator& locator,
-              std::span<const double> target_edge, double min_angle)
-        : frame_(frame), surface_(surface), locator_(locator), target_edge_(target_edge),
-          cosine_bound_(std::cos(min_angle * std::numbers::pi / 180))
+    SurfaceRefinement(const MeshingPlane& plane, const SurfaceTriangulation& triangulation, const TargetEdge& target,
+                      double min_angle)
+        : plane_(plane), target_(target), cosine_bound_(std::cos(min_angle * std::numbers::pi / 180))
     {
-        first_vertex_ = mesh.vertices_of(surface).first;
-        for (const VertexId v : mesh.vertices_of(surface)) add_vertex(mesh.position(v));
-        for (const PatchId p : mesh.patches_of(surface)) {
-            const auto c = mesh.corners(p);
-            const auto local = [&](VertexId v) { return VertexHandle(static_cast<int>(v.value - first_vertex_)); };
-            mesh_.add_face(local(c[0]), local(c[1]), local(c[2]));
+        for (const Vec3& p : triangulation.positions) add_vertex(p);
+        for (const auto& t : triangulation.triangles) {
+            const auto handle = [](std::uint32_t v) { return VertexHandle(static_cast<int>(v)); };
+            mesh_.add_face(handle(t[0]), handle(t[1]), handle(t[2]));
         }
     }
 
@@ -72,7 +69,7 @@ public:
 private:
     VertexHandle add_vertex(const Vec3& p)
     {
-        flat_.push_back(frame_.to_plane(p));
+        flat_.push_back(plane_.to_plane(p));
         return mesh_.add_vertex(p);
     }
 
@@ -106,9 +103,8 @@ private:
     bool too_long(FaceHandle face) const
     {
         const auto c = corners(face);
-        const Vec2 middle = (at(c[0]) + at(c[1]) + at(c[2])) / 3.0;
-        const PatchId old = locator_.locate(surface_, static_cast<float>(middle.x), static_cast<float>(middle.y));
-        const double target = target_edge_[old.value] * (1 + 1e-9);
+        const Vec2 middle = plane_.diameter * (at(c[0]) + at(c[1]) + at(c[2])) / 3.0;
+        const double target = target_(middle) / plane_.diameter * (1 + 1e-9);
         return length2(longest(face)) > target * target;
     }
 
@@ -135,7 +131,7 @@ private:
         const auto c = corners(face);
         const Vec2 a = at(c[1]) - at(c[0]), b = at(c[2]) - at(c[0]);
         const double aa = glm::dot(a, a), bb = glm::dot(b, b), twice = 2 * (a.x * b.y - a.y * b.x);
-        const Vec2 centre = at(c[0]) + Vec2(b.y * aa - a.y * bb, a.x * bb - b.x * aa) / twice;
+        const Vec2 centre = plane_.rounded(at(c[0]) + Vec2(b.y * aa - a.y * bb, a.x * bb - b.x * aa) / twice);
 
         const auto [target, blocking] = walk(face, centre);
         if (blocking.is_valid()) return split_edge(blocking);
@@ -146,7 +142,7 @@ private:
             // On an edge it would leave a triangle without area.
             if (u.x * v.y - u.y * v.x < 1e-3 * length2(h)) return split_edge(longest(target));
         }
-        const VertexHandle vertex = add_vertex(frame_.lift(centre));
+        const VertexHandle vertex = add_vertex(plane_.lift(centre));
         mesh_.split(target, vertex);
         settle(vertex);
     }
@@ -158,7 +154,8 @@ private:
         for (;;) {
             HalfedgeHandle h = mesh_.halfedge_handle(face), way_out;
             for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h))
-                if (h != entered && cross2(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), q) < 0) way_out = h;
+                if (h != entered && cross2(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), q) < 0)
+                    way_out = h;
             if (!way_out.is_valid() || on_border(way_out)) return {face, way_out};
             entered = mesh_.opposite_halfedge_handle(way_out);
             face = mesh_.face_handle(entered);
@@ -212,16 +209,13 @@ private:
     {
         const auto point = [&](VertexHandle v) { return Kernel::Point_2(at(v).x, at(v).y); };
         const auto p = point(centre), q = point(a), r = point(b), s = point(far);
-        return CGAL::side_of_oriented_circle(p, q, r, s) == CGAL::ON_POSITIVE_SIDE
-            && CGAL::orientation(p, q, s) == CGAL::LEFT_TURN && CGAL::orientation(p, s, r) == CGAL::LEFT_TURN;
+        return CGAL::side_of_oriented_circle(p, q, r, s) == CGAL::ON_POSITIVE_SIDE &&
+               CGAL::orientation(p, q, s) == CGAL::LEFT_TURN && CGAL::orientation(p, s, r) == CGAL::LEFT_TURN;
     }
 
-    const PlaneFrame& frame_;
-    SurfaceId surface_;
-    const PatchLocator& locator_;
-    std::span<const double> target_edge_;
+    MeshingPlane plane_;
+    const TargetEdge& target_;
     double cosine_bound_;
-    std::uint32_t first_vertex_ = 0;
     TriMesh mesh_;
     std::vector<Vec2> flat_;
     std::deque<FaceHandle> work_;
@@ -229,10 +223,23 @@ private:
 
 }  // namespace
 
-SurfaceTriangulation refine_surface(const Scene& scene, SurfaceId surface, const PatchMesh& mesh,
-                                    const PatchLocator& locator, std::span<const double> target_edge, double min_angle)
+SurfaceTriangulation triangulation_of(const PatchMesh& mesh, SurfaceId surface)
 {
-    SurfaceRefinement refinement(scene.surface(surface).frame, surface, mesh, locator, target_edge, min_angle);
+    const auto vertices = mesh.vertices_of(surface);
+    SurfaceTriangulation result;
+    for (const VertexId v : vertices) result.positions.push_back(mesh.position(v));
+    for (const PatchId p : mesh.patches_of(surface)) {
+        const auto c = mesh.corners(p);
+        result.triangles.push_back(
+            {c[0].value - vertices.first, c[1].value - vertices.first, c[2].value - vertices.first});
+    }
+    return result;
+}
+
+SurfaceTriangulation refine_triangulation(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,
+                                          const TargetEdge& target, double min_angle)
+{
+    SurfaceRefinement refinement(plane, triangulation, target, min_angle);
     refinement.refine();
     return refinement.result();
 }

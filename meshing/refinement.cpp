@@ -20,9 +20,8 @@ void for_each_surface(const Scene& scene, const Work& work)
 {
     std::vector<std::uint32_t> order(scene.surfaces.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return scene.surfaces[a].area > scene.surfaces[b].area;
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return scene.surfaces[a].area > scene.surfaces[b].area; });
     tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { work(SurfaceId(order[i])); });
 }
 
@@ -40,17 +39,28 @@ PatchMesh join(const Scene& scene, const std::vector<SurfaceTriangulation>& piec
     return PatchMesh(scene, std::move(arrays));
 }
 
-/// Light is only followed on surfaces that reflect: others get as few patches as their polygon allows.
-double edge_bound(const Scene& scene, SurfaceId surface, double max_edge)
+/// An angle bound costs a narrow strip as many triangles as it is longer than wide: those narrower than a
+/// sixtieth of the longest edge do without.
+double angle_bound(const Scene& scene, const Surface& surface, double max_edge, double min_angle)
 {
-    return scene.material_of(surface).reflects() ? max_edge : 0;
+    double border = 0;
+    for (const auto& loop : surface.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            border += glm::distance(scene.vertices[loop[i]], scene.vertices[loop[(i + 1) % loop.size()]]);
+    return 2 * surface.area / border < std::min(max_edge, border / 2) / 60 ? 0 : min_angle;
 }
 
 std::vector<SurfaceTriangulation> triangulate_all(const Scene& scene, double max_edge, double min_angle)
 {
     std::vector<SurfaceTriangulation> pieces(scene.surfaces.size());
     for_each_surface(scene, [&](SurfaceId s) {
-        pieces[s.value] = triangulate_surface(scene, s, edge_bound(scene, s, max_edge), min_angle);
+        pieces[s.value] = triangulate_polygon(scene, s);
+        // Light is only followed on surfaces that reflect: others keep the fewest patches.
+        if (!scene.material_of(s).reflects()) return;
+        const Surface& surface = scene.surface(s);
+        pieces[s.value] = refine_triangulation(
+            {surface.frame, scene.diameter}, pieces[s.value], [&](const Vec2&) { return max_edge; },
+            angle_bound(scene, surface, max_edge, min_angle));
     });
     return pieces;
 }
@@ -76,12 +86,15 @@ std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::
     for (int attempt = 0; attempt < 14; ++attempt) {
         auto pieces = triangulate_all(scene, h, min_angle);
         const std::size_t found = count(pieces);
-        if (best.empty() || (found <= wanted ? best_count > wanted || found > best_count
-                                             : best_count > wanted && found < best_count)) {
+        if (best.empty() ||
+            (found <= wanted ? best_count > wanted || found > best_count : best_count > wanted && found < best_count)) {
             best = std::move(pieces);
             best_count = found;
         }
-        if (found > wanted) too_fine = h; else coarse_enough = h;
+        if (found > wanted)
+            too_fine = h;
+        else
+            coarse_enough = h;
         if ((found <= wanted && 10 * found >= 8 * wanted) || h > 2 * scene.diameter) break;
         const double step = std::clamp(std::sqrt(static_cast<double>(found) / (0.92 * n)), 0.5, 2.0);
         const double next = h * step;
@@ -110,15 +123,23 @@ Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPla
     for (;;) {
         std::vector<double> target(mesh.patch_count(), std::numeric_limits<double>::infinity());
         std::vector<std::uint8_t> touched(scene.surfaces.size(), 0);
+        std::vector<double> shortest(scene.surfaces.size(), std::numeric_limits<double>::infinity());
         for (std::size_t i = 0; i < honoured; ++i) {
             const auto& split = plan.splits[i];
             target[split.patch.value] = std::min(target[split.patch.value], split.target_edge);
-            touched[mesh.surface(split.patch).value] = 1;
+            const std::uint32_t surface = mesh.surface(split.patch).value;
+            touched[surface] = 1;
+            shortest[surface] = std::min(shortest[surface], split.target_edge);
         }
         for_each_surface(scene, [&](SurfaceId s) {
-            // Without a target there is nothing to do, and the old angles are as good as the input permits.
-            const double min_angle = touched[s.value] != 0 ? options.min_angle : 0;
-            pieces[s.value] = refine_surface(scene, s, mesh, locator, target, min_angle);
+            pieces[s.value] = triangulation_of(mesh, s);
+            if (touched[s.value] == 0) return;
+            const TargetEdge target_at = [&](const Vec2& q) {
+                return target[locator.locate(s, static_cast<float>(q.x), static_cast<float>(q.y)).value];
+            };
+            const Surface& surface = scene.surface(s);
+            pieces[s.value] = refine_triangulation({surface.frame, scene.diameter}, pieces[s.value], target_at,
+                                                   angle_bound(scene, surface, shortest[s.value], options.min_angle));
         });
         const std::size_t found = count(pieces);
         if (options.max_elements == 0 || found <= options.max_elements || honoured == 0) break;

@@ -4,8 +4,9 @@
 #include "meshing/scene.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
-#include <span>
+#include <functional>
 #include <vector>
 
 namespace patchlight {
@@ -16,16 +17,35 @@ struct SurfaceTriangulation {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front
 };
 
-/// Delaunay meshing of a surface's polygon by CGAL: no edge longer than `max_edge` (m; ≤ 0: no bound) and, except
-/// at the input's own angles, no angle below `min_angle` (degrees, ≤ 20.7, where it is sure to end). A surface
-/// narrower than a sixtieth of `max_edge` has no angle bound: it would cost as many triangles as it is longer than wide.
-SurfaceTriangulation triangulate_surface(const Scene& scene, SurfaceId surface, double max_edge, double min_angle);
+/// Meshing's own plane coordinates: those of the surface's frame over the scene's diameter, rounded to multiples of
+/// 2⁻³⁴ (far below the snap of 1e-8): the same polygon gives the same triangles whatever its scale and place.
+struct MeshingPlane {
+    const PlaneFrame& frame;
+    double diameter;
+
+    static Vec2 rounded(const Vec2& q)
+    {
+        return {std::ldexp(std::round(std::ldexp(q.x, 34)), -34), std::ldexp(std::round(std::ldexp(q.y, 34)), -34)};
+    }
+    Vec2 to_plane(const Vec3& p) const { return rounded(frame.to_plane(p) / diameter); }
+    Vec3 lift(const Vec2& q) const { return frame.lift(q * diameter); }
+};
+
+/// The constrained Delaunay triangulation of a surface's polygon by CGAL, no vertex added.
+SurfaceTriangulation triangulate_polygon(const Scene& scene, SurfaceId surface);
+
+/// The patches of one surface of a mesh.
+SurfaceTriangulation triangulation_of(const PatchMesh& mesh, SurfaceId surface);
+
+/// How long an edge may be at a point of the surface's frame (m); infinity = as it is.
+using TargetEdge = std::function<double(const Vec2& q)>;
 
 /// Delaunay refinement: inserts circumcentres (or middles of border edges that lie in the way) until no patch has a
-/// longer edge than `target_edge` asks where it lies (one value per patch of `mesh`, m), and, where the input's own
-/// angles permit, no angle below `min_angle` (degrees). Old vertices stay; nothing to do = nothing changed.
-/// [Chew93], [Ruppert95].
-SurfaceTriangulation refine_surface(const Scene& scene, SurfaceId surface, const PatchMesh& mesh,
-                                    const PatchLocator& locator, std::span<const double> target_edge, double min_angle);
+/// longer edge than the target at its centroid, and, where the input's own angles permit, no angle below `min_angle`
+/// (degrees, 0 … 20.7). Old vertices stay; nothing to do = nothing changed. Expects a constrained Delaunay
+/// triangulation. Always the same result: CGAL's own mesher orders equal triangles by their address, so that it
+/// meshes a symmetric polygon differently from run to run. [Ruppert95], [Chew93].
+SurfaceTriangulation refine_triangulation(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,
+                                          const TargetEdge& target, double min_angle);
 
 }  // namespace patchlight

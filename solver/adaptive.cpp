@@ -45,11 +45,11 @@ class Cycle {
     }
 
 public:
-    Cycle(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, int number, const AdaptiveOptions& options,
-          const AdaptiveObservers& observers)
-        : locator_(mesh), exchange_{scene, caster, mesh, locator_}, number_(number), options_(options), observers_(observers)
-    {
-    }
+    Cycle(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, int number,
+          const AdaptiveOptions& options, const AdaptiveObservers& observers)
+        : locator_(mesh), exchange_{scene, caster, mesh, locator_}, number_(number), options_(options),
+          observers_(observers)
+    {}
 
     /// First shooting on the coarse mesh; later gathering a little, from what the coarser mesh knew.
     Solved solve_roughly(Radiosity& B)
@@ -137,8 +137,8 @@ Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
 
 }  // namespace
 
-AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options, const AdaptiveObservers& observers,
-                                  std::optional<AdaptiveStart> start)
+AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,
+                                  const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
     PatchMesh mesh = start ? std::move(start->mesh) : triangulate(scene, options.meshing);
@@ -160,11 +160,12 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
             const VertexRadiosity& vertex_B = last ? solved.vertex_B : evaluation.vertex_B;
             if (observers.on_step)
                 observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.report,
-                                   evaluation.error, solved.energy, last ? 0 : plan.splits.size(), work.rays, work.seconds});
+                                   evaluation.error, solved.energy, last ? 0 : plan.splits.size(), work.rays,
+                                   work.seconds});
             if (last) {
                 const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
-                return {std::move(mesh), std::move(B), std::move(solved.vertex_B), std::move(evaluation.error),
-                        solved.energy, solved.report, solved.report.converged && met};
+                return {std::move(mesh), std::move(B),  std::move(solved.vertex_B),    std::move(evaluation.error),
+                        solved.energy,   solved.report, solved.report.converged && met};
             }
         }
         Refinement refined = work.refine(plan);

@@ -18,10 +18,11 @@ enum class Refine { none, intensity };
 
 /// Everything solve_adaptively needs to know.
 struct AdaptiveOptions {
-    MeshingOptions meshing;         ///< of the first, uniform mesh (with Refine::none: the only one)
+    MeshingOptions meshing;  ///< of the first, uniform mesh (with Refine::none: the only one)
     FormFactorOptions form_factors;
-    SolveOptions rough{.solver = Solver::progressive, .tolerance = 0.5, .max_sweeps = 1, .ambient = true};  ///< before the last cycle
-    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};  ///< on the last mesh
+    SolveOptions rough{
+        .solver = Solver::progressive, .tolerance = 0.5, .max_sweeps = 1, .ambient = true};  ///< before the last cycle
+    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};                   ///< on the last mesh
     GatherOptions gather;
     EstimateOptions estimate;
     MarkOptions mark;
@@ -43,13 +44,13 @@ struct AdaptiveStep {
     int cycle = 0;
     Stage stage = Stage::rough;
     const PatchMesh& mesh;
-    const Radiosity& B;                ///< per patch
-    const VertexRadiosity& vertex_B;   ///< the linear reconstruction; before the last cycle from the estimate's few rays
+    const Radiosity& B;               ///< per patch
+    const VertexRadiosity& vertex_B;  ///< the linear reconstruction; before the last cycle from the estimate's few rays
     const SolveReport& solved;
     const ErrorEstimate& error;
     const EnergyBalance& energy;
-    std::size_t splits = 0;            ///< how many patches the plan splits next
-    std::size_t rays = 0;              ///< traced in this cycle
+    std::size_t splits = 0;  ///< how many patches the plan splits next
+    std::size_t rays = 0;    ///< traced in this cycle
     const StageSeconds& seconds;
 };
 using StepObserver = std::function<void(const AdaptiveStep&)>;

@@ -8,7 +8,10 @@ namespace patchlight {
 
 namespace {
 
-double square(const Rgb& x) { return glm::dot(x, x); }
+double square(const Rgb& x)
+{
+    return glm::dot(x, x);
+}
 
 /// Corners first (by vertex id), then edge midpoints, then centroids.
 struct ExtraPoints {
@@ -52,10 +55,11 @@ PatchField<double> residual(const Exchange& exchange, const ExtraPoints& extra, 
         const auto c = exchange.mesh.corners(p);
         double sum = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            sum += 2.0 / 15 * square(rho * (H[extra.midpoint_of[p.value][k]]
-                                            - 0.5 * (H[c[k].value] + H[c[(k + 1) % 3].value])));
-        sum += 9.0 / 20 * square(rho * (H[extra.first_centroid + p.value]
-                                        - (H[c[0].value] + H[c[1].value] + H[c[2].value]) / 3.0));
+            sum += 2.0 / 15 *
+                   square(rho * (H[extra.midpoint_of[p.value][k]] - 0.5 * (H[c[k].value] + H[c[(k + 1) % 3].value])));
+        sum +=
+            9.0 / 20 *
+            square(rho * (H[extra.first_centroid + p.value] - (H[c[0].value] + H[c[1].value] + H[c[2].value]) / 3.0));
         eta[p] = std::sqrt(exchange.mesh.area(p) * sum);
     }
     return eta;
@@ -96,8 +100,10 @@ Evaluation evaluate(const Exchange& exchange, const Radiosity& B, const Estimate
     sampling.rays = options.rays;
     const bool by_residual = options.indicator == Indicator::residual;
     ExtraPoints extra;
-    if (by_residual) extra = extra_points(exchange);
-    else extra.points = vertex_points(exchange);
+    if (by_residual)
+        extra = extra_points(exchange);
+    else
+        extra.points = vertex_points(exchange);
     GatheredLight light = gather_irradiance(exchange, B, extra.points, sampling, monitor);
     share_irradiance(exchange, gather.crease_angle, light.irradiance);
 
@@ -105,8 +111,8 @@ Evaluation evaluate(const Exchange& exchange, const Radiosity& B, const Estimate
     evaluation.rays = light.rays;
     evaluation.vertex_B = linear_radiosity(exchange, light.irradiance);
     ErrorEstimate& error = evaluation.error;
-    error.eta = by_residual ? residual(exchange, extra, light.irradiance)
-                            : vertex_difference(exchange, evaluation.vertex_B);
+    error.eta =
+        by_residual ? residual(exchange, extra, light.irradiance) : vertex_difference(exchange, evaluation.vertex_B);
     double sum = 0;
     for (const double eta : error.eta.values()) sum += eta * eta;
     error.total = std::sqrt(sum);
@@ -131,9 +137,10 @@ RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstima
     RefinementPlan plan;
     double held = 0;
     for (const std::uint32_t i : order) {
-        const bool enough = options.marking == Marking::doerfler
-            ? held >= options.share * all
-            : static_cast<double>(plan.splits.size()) >= options.share * static_cast<double>(mesh.patch_count());
+        const bool enough =
+            options.marking == Marking::doerfler
+                ? held >= options.share * all
+                : static_cast<double>(plan.splits.size()) >= options.share * static_cast<double>(mesh.patch_count());
         if (enough) break;
         const PatchId p(i);
         plan.splits.push_back({p, 0});

@@ -11,10 +11,12 @@ namespace patchlight {
 GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
                                 const GatherOptions& options, const WorkMonitor& monitor)
 {
-    const FormFactorOptions sampling{.rays = options.rays, .shadow_rays = options.shadow_rays,
-                                     .small_source = options.small_source, .seed = options.seed};
-    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator,
-                             emitters(exchange.scene), sampling);
+    const FormFactorOptions sampling{.rays = options.rays,
+                                     .shadow_rays = options.shadow_rays,
+                                     .small_source = options.small_source,
+                                     .seed = options.seed};
+    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
+                             sampling);
     GatheredLight result;
     result.irradiance.assign(points.size(), Rgb(0.0));
     result.rays = for_each_row<RowScratch>(points.size(), monitor, [&](std::size_t i, RowScratch& scratch) {
@@ -22,7 +24,8 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
         if (!exchange.scene.material_of(point.surface).reflects()) return;
         sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
         Rgb H(0.0);
-        for (std::size_t k = 0; k < scratch.row.patches.size(); ++k) H += scratch.row.factors[k] * B[scratch.row.patches[k]];
+        for (std::size_t k = 0; k < scratch.row.patches.size(); ++k)
+            H += scratch.row.factors[k] * B[scratch.row.patches[k]];
         result.irradiance[i] = H;
     });
     return result;
@@ -74,7 +77,8 @@ void share_irradiance(const Exchange& exchange, double crease_angle, std::vector
             Rgb sum(0.0);
             double count = 0;
             for (const VertexId w : group)
-                if (glm::dot(scene.surface(mesh.surface(v)).frame.n, scene.surface(mesh.surface(w)).frame.n) >= cosine) {
+                if (glm::dot(scene.surface(mesh.surface(v)).frame.n, scene.surface(mesh.surface(w)).frame.n) >=
+                    cosine) {
                     sum += irradiance[w.value];
                     ++count;
                 }

@@ -10,12 +10,12 @@ namespace patchlight {
 
 /// Where a long computation stands.
 struct Progress {
-    std::string_view stage;    ///< mesh, assemble, solve, gather, estimate
+    std::string_view stage;  ///< mesh, assemble, solve, gather, estimate
     int cycle = 0;
-    double fraction = 0;       ///< of this stage, 0 … 1
+    double fraction = 0;  ///< of this stage, 0 … 1
     std::size_t elements = 0;
-    std::size_t rays = 0;      ///< traced so far in this stage
-    double unshot = -1;        ///< share of the emitted power not yet shot; -1 = does not apply
+    std::size_t rays = 0;  ///< traced so far in this stage
+    double unshot = -1;    ///< share of the emitted power not yet shot; -1 = does not apply
 };
 
 /// Called from one thread at a time, some times a second.

@@ -85,11 +85,12 @@ std::vector<VertexRadiosity> progressive_snapshots(const Scene& scene, const Ray
             if (surface == shooter.surface || !scene.material_of(surface).reflects()) return;
             const ReceiverPoint receiver{receivers[i].position, scene.surface(surface).frame.n};
             RandomNumbers random(options.seed + static_cast<std::uint64_t>(shot), i);
-            arrived[i] = light * visible_factor(caster, source, {&receiver, 1}, std::min(options.shadow_rays, 256), random,
-                                                scratch.shadow);
+            arrived[i] = light * visible_factor(caster, source, {&receiver, 1}, std::min(options.shadow_rays, 256),
+                                                random, scratch.shadow);
         });
         for (const PatchId p : shooter.patches) unshot[p] = Rgb(0.0);
-        for (const PatchId p : mesh.patches()) unshot[p] += scene.material_of(mesh.surface(p)).reflectance * arrived[p.value];
+        for (const PatchId p : mesh.patches())
+            unshot[p] += scene.material_of(mesh.surface(p)).reflectance * arrived[p.value];
         for (std::size_t v = 0; v < mesh.vertex_count(); ++v) irradiance[v] += arrived[mesh.patch_count() + v];
         if (std::find(shots.begin(), shots.end(), shot) == shots.end()) continue;
         auto shared = irradiance;

@@ -22,15 +22,15 @@ struct SolveOptions {
     double tolerance = 1e-4;  ///< on the bound Σ A|B − B̃| / Σ A B (worst band), > 0
     int max_sweeps = 200;     ///< sweeps, ≥ 1; a sweep of shooting is as many shots as there are patches
     ShootingOrder order = ShootingOrder::unshot_power;
-    bool ambient = false;     ///< shooting: spread the unshot light as an ambient term over the result
+    bool ambient = false;  ///< shooting: spread the unshot light as an ambient term over the result
 };
 
 /// How a linear solve went. Not converging is a report, not an exception.
 struct SolveReport {
     Solver solver = Solver::gauss_seidel;
-    std::size_t iterations = 0;   ///< sweeps, or shots
-    double residual = 0;          ///< what `tolerance` is compared with, at the end
-    double unshot = 0;            ///< share of the emitted power not yet shot; gathering: 0
+    std::size_t iterations = 0;  ///< sweeps, or shots
+    double residual = 0;         ///< what `tolerance` is compared with, at the end
+    double unshot = 0;           ///< share of the emitted power not yet shot; gathering: 0
     bool converged = false;
     std::size_t rays = 0;         ///< traced on demand
     std::vector<double> history;  ///< residual after each sweep; shooting: after 1, 2, 4, 8 … shots

@@ -54,12 +54,12 @@ SolveReport solve_gathering(const RadiositySystem& system, Radiosity& B, const S
         report.residual = 0;
         for (int band = 0; band < 3; ++band)
             if (total[band] > 0)
-                report.residual = std::max(report.residual, change[band] * rho_max[band] / (1 - rho_max[band]) / total[band]);
+                report.residual =
+                    std::max(report.residual, change[band] * rho_max[band] / (1 - rho_max[band]) / total[band]);
         report.history.push_back(report.residual);
         report.converged = report.residual <= options.tolerance;
         // The logarithm of the way down is about linear in sweeps.
-        if (monitor.tell)
-            monitor.tell(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
+        if (monitor.tell) monitor.tell(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
     }
     return report;
 }

@@ -8,7 +8,10 @@ namespace patchlight {
 
 namespace {
 
-double sum(const Rgb& x) { return x.r + x.g + x.b; }
+double sum(const Rgb& x)
+{
+    return x.r + x.g + x.b;
+}
 
 /// The state of a progressive solve beside B itself.
 struct Unshot {
@@ -100,8 +103,7 @@ SolveReport solve_shooting(const RadiositySystem& system, const ColumnSource& co
         }
         ++report.iterations;
         if (on_shot) on_shot(report, B);
-        if (monitor.tell)
-            monitor.tell(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
+        if (monitor.tell) monitor.tell(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
     }
     if (options.ambient) {
         const Rgb ambient = unshot.ambient();

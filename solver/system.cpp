@@ -4,7 +4,10 @@ namespace patchlight {
 
 namespace {
 
-double sum(const Rgb& x) { return x.r + x.g + x.b; }
+double sum(const Rgb& x)
+{
+    return x.r + x.g + x.b;
+}
 
 }  // namespace
 
@@ -36,8 +39,8 @@ RadiositySystem unassembled(const Scene& scene, const PatchMesh& mesh)
 RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor)
 {
     RadiositySystem system = unassembled(exchange.scene, exchange.mesh);
-    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator,
-                             emitters(exchange.scene), options);
+    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
+                             options);
     system.F = assemble_rows(sampler, exchange.mesh.patch_count(), monitor);
     return system;
 }

@@ -7,7 +7,8 @@
 
 namespace patchlight {
 
-/// What light is exchanged over: the scene, its visibility, and the patch mesh of one cycle. References must outlive it.
+/// What light is exchanged over: the scene, its visibility, and the patch mesh of one cycle. References must outlive
+/// it.
 struct Exchange {
     const Scene& scene;
     const RayCaster& caster;
@@ -20,7 +21,7 @@ struct RadiositySystem {
     PatchField<double> area;  ///< m²
     PatchField<Rgb> E;        ///< W/m²
     PatchField<Rgb> rho;
-    FormFactorMatrix F;       ///< empty when rows are only computed on demand
+    FormFactorMatrix F;  ///< empty when rows are only computed on demand
 };
 
 /// The surfaces that emit.
@@ -37,9 +38,9 @@ RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& opti
 
 /// Where the light went, W, three bands together. emitted = absorbed + escaped, but for the error.
 struct EnergyBalance {
-    double emitted = 0;   ///< Σ A E
-    double absorbed = 0;  ///< Σ A (1 − ρ) H, and what met black backs
-    double escaped = 0;   ///< what met nothing
+    double emitted = 0;            ///< Σ A E
+    double absorbed = 0;           ///< Σ A (1 − ρ) H, and what met black backs
+    double escaped = 0;            ///< what met nothing
     double relative_residual = 0;  ///< (emitted − absorbed − escaped) / emitted; raw, nothing is normalised
 };
 

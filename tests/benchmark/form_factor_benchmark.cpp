@@ -20,7 +20,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// Embree and nothing else.
 class BareEmbree {
@@ -33,8 +36,8 @@ public:
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                               3 * sizeof(float), vertices.size()));
-        auto* t = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                      3 * sizeof(std::uint32_t), triangles.size()));
+        auto* t = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
         for (const Vec3& p : vertices)
             for (int k = 0; k < 3; ++k) *v++ = static_cast<float>(p[k]);
         for (const auto& triangle : triangles)
@@ -100,8 +103,8 @@ void fill(const RayBatch& rays, std::vector<RTCRayHit>& singles)
 {
     singles.resize(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        singles[i].ray = {rays.ox[i], rays.oy[i], rays.oz[i], 0, rays.dx[i], rays.dy[i], rays.dz[i], 0,
-                          rays.reach[i], ~0U, 0, 0};
+        singles[i].ray = {rays.ox[i], rays.oy[i], rays.oz[i],    0,   rays.dx[i], rays.dy[i],
+                          rays.dz[i], 0,          rays.reach[i], ~0U, 0,          0};
         singles[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
     }
 }

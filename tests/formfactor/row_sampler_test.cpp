@@ -14,7 +14,10 @@ namespace {
 using testing::add_surface;
 using testing::cube_inside;
 
-Material grey(double rho, double E) { return {.name = "grey", .reflectance = Rgb(rho), .emission = Rgb(E)}; }
+Material grey(double rho, double E)
+{
+    return {.name = "grey", .reflectance = Rgb(rho), .emission = Rgb(E)};
+}
 
 struct Sampled {
     Scene scene;
@@ -24,8 +27,7 @@ struct Sampled {
 
     Sampled(Scene s, double max_edge)
         : scene(std::move(s)), caster(scene), mesh(triangulate(scene, {.max_edge = max_edge})), locator(mesh)
-    {
-    }
+    {}
     RowSampler sampler(const FormFactorOptions& options, std::vector<SurfaceId> sources = {}) const
     {
         return RowSampler(scene, caster, mesh, locator, sources, options);

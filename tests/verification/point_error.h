@@ -36,15 +36,17 @@ inline std::vector<ReferencePoint> read_reference_points(const std::filesystem::
             std::getline(fields, field, ',');
             x = std::stod(field);
         }
-        points.push_back({{value[0], value[1], value[2]}, {value[3], value[4], value[5]},
-                          {value[6], value[7], value[8]}, {value[9], value[10], value[11]}});
+        points.push_back({{value[0], value[1], value[2]},
+                          {value[3], value[4], value[5]},
+                          {value[6], value[7], value[8]},
+                          {value[9], value[10], value[11]}});
     }
     return points;
 }
 
 /// The linear reconstruction of B at a point of a surface (file coordinates, the normal picks the side).
-inline Rgb radiosity_at(const Scene& scene, const PatchMesh& mesh, const PatchLocator& locator, const VertexRadiosity& B,
-                        const Vec3& file_position, const Vec3& normal)
+inline Rgb radiosity_at(const Scene& scene, const PatchMesh& mesh, const PatchLocator& locator,
+                        const VertexRadiosity& B, const Vec3& file_position, const Vec3& normal)
 {
     const Vec3 p = file_position * scene.unit - scene.center;
     PatchId best;
@@ -76,7 +78,8 @@ inline PointError point_error(const Scene& scene, const PatchMesh& mesh, const V
 {
     const PatchLocator locator(mesh);
     double num = 0, den = 0, relative = 0, mean = 0;
-    for (const auto& point : points) mean += (point.B.r + point.B.g + point.B.b) / (3.0 * static_cast<double>(points.size()));
+    for (const auto& point : points)
+        mean += (point.B.r + point.B.g + point.B.b) / (3.0 * static_cast<double>(points.size()));
     std::size_t counted = 0;
     for (const auto& point : points) {
         const Rgb found = radiosity_at(scene, mesh, locator, B, point.position, point.normal);

@@ -1,0 +1,124 @@
+#include "solver/estimate.h"
+
+#include "tests/formfactor/boxes.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+namespace patchlight {
+namespace {
+
+struct Flat {
+    Scene scene;
+    PatchMesh mesh;
+
+    Flat()
+    {
+        scene.objects = {"o"};
+        scene.materials = {{.name = "grey", .reflectance = Rgb(0.5)}};
+        testing::add_surface(scene, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, 0);
+        mesh = triangulate(scene, {.max_edge = 0.5});
+    }
+};
+
+ErrorEstimate rising(const PatchMesh& mesh)
+{
+    ErrorEstimate error;
+    error.eta = PatchField<double>(mesh.patch_count());
+    for (const PatchId p : mesh.patches()) error.eta[p] = 1.0 + p.value;
+    return error;
+}
+
+// Dörfler: the marked ones hold the share of Σ η², and without the last of them they don't.
+TEST(Mark, DoerflerTakesTheFewestPatchesThatHoldTheShare)
+{
+    const Flat flat;
+    const ErrorEstimate error = rising(flat.mesh);
+    for (const double share : {0.1, 0.5, 0.9, 1.0}) {
+        const RefinementPlan plan = mark(flat.scene, flat.mesh, error, {.share = share});
+        double all = 0, held = 0;
+        for (const double eta : error.eta.values()) all += eta * eta;
+        for (const auto& split : plan.splits) held += error.eta[split.patch] * error.eta[split.patch];
+        EXPECT_GE(held, share * all * (1 - 1e-12));
+        const double last = error.eta[plan.splits.back().patch];
+        EXPECT_LT(held - last * last, share * all);
+        for (std::size_t i = 1; i < plan.splits.size(); ++i)
+            EXPECT_GE(error.eta[plan.splits[i - 1].patch], error.eta[plan.splits[i].patch]) << "the worst first";
+    }
+}
+
+TEST(Mark, FixedFractionTakesThatManyPatches)
+{
+    const Flat flat;
+    const RefinementPlan plan =
+        mark(flat.scene, flat.mesh, rising(flat.mesh), {.marking = Marking::fixed_fraction, .share = 0.25});
+    EXPECT_NEAR(static_cast<double>(plan.splits.size()), 0.25 * static_cast<double>(flat.mesh.patch_count()), 1);
+}
+
+TEST(Mark, NothingWrongNothingToSplit)
+{
+    const Flat flat;
+    ErrorEstimate error;
+    error.eta = PatchField<double>(flat.mesh.patch_count(), 0.0);
+    EXPECT_TRUE(mark(flat.scene, flat.mesh, error, {}).empty());
+}
+
+TEST(Mark, TargetsAreShorterThanWhatIsThere)
+{
+    const Flat flat;
+    for (const auto& split : mark(flat.scene, flat.mesh, rising(flat.mesh), {}).splits) {
+        EXPECT_LT(split.target_edge, flat.mesh.longest_edge(split.patch));
+        EXPECT_GT(split.target_edge, 0);
+    }
+}
+
+// ∫|B|² of a linear function over [−1,1]²: B = x has 4/3 for each band.
+TEST(ReflectedNorm, IsExactForLinearFunctions)
+{
+    const Flat flat;
+    VertexRadiosity B(flat.mesh.vertex_count());
+    for (const VertexId v : flat.mesh.vertices()) B[v] = Rgb(flat.mesh.position(v).x);
+    EXPECT_NEAR(reflected_norm(flat.scene, flat.mesh, B), std::sqrt(3 * 4.0 / 3), 1e-12);
+}
+
+// A floor that sees only the dark has B = 0: error 0/0 counts as 0.
+TEST(Evaluate, DarkFloorHasNoError)
+{
+    const Flat flat;
+    const RayCaster caster(flat.scene);
+    const PatchLocator locator(flat.mesh);
+    for (const Indicator indicator : {Indicator::residual, Indicator::vertex_difference}) {
+        const Evaluation dark = evaluate({flat.scene, caster, flat.mesh, locator}, emittance(flat.scene, flat.mesh),
+                                         {.indicator = indicator}, {});
+        EXPECT_EQ(dark.error.relative, 0);
+        EXPECT_EQ(dark.error.total, 0);
+    }
+}
+
+// Facets of one material within the crease angle share irradiance where they meet; those beyond it don't.
+TEST(Crease, FacetsOfACurvedObjectShareIrradianceAtCommonCorners)
+{
+    Scene scene;
+    scene.objects = {"o"};
+    scene.materials = {{.name = "grey", .reflectance = Rgb(0.5)}};
+    const double s = std::sin(0.2), c = std::cos(0.2);
+    testing::add_surface(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 0);
+    testing::add_surface(scene, {{-c, 0, -s}, {0, 0, 0}, {0, 1, 0}, {-c, 1, -s}}, 0);  // bent by 0.2 rad = 11.5°
+    const PatchMesh mesh = triangulate(scene, {.max_edge = 10});
+    const RayCaster caster(scene);
+    const PatchLocator locator(mesh);
+    const Exchange exchange{scene, caster, mesh, locator};
+    std::vector<Rgb> H(mesh.vertex_count());
+    for (const VertexId v : mesh.vertices()) H[v.value] = Rgb(mesh.surface(v).value == 0 ? 1.0 : 3.0);
+    auto shared = H, kept = H;
+    share_irradiance(exchange, 30, shared);
+    share_irradiance(exchange, 5, kept);
+    EXPECT_EQ(kept, H);
+    for (const VertexId v : mesh.vertices())
+        EXPECT_EQ(shared[v.value].r, mesh.position(v).x == 0 ? 2.0 : H[v.value].r) << v.value;
+}
+
+}  // namespace
+}  // namespace patchlight
