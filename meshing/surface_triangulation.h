@@ -18,14 +18,14 @@ struct SurfaceTriangulation {
 };
 
 /// Meshing's own plane coordinates: those of the surface's frame over the scene's diameter, rounded to multiples of
-/// 2⁻³⁴ (far below the snap of 1e-8): the same polygon gives the same triangles whatever its scale and place.
+/// 2⁻³⁰ (a tenth of the snap of 1e-8): the same polygon gives the same triangles whatever its scale and place.
 struct MeshingPlane {
     const PlaneFrame& frame;
     double diameter;
 
     static Vec2 rounded(const Vec2& q)
     {
-        return {std::ldexp(std::round(std::ldexp(q.x, 34)), -34), std::ldexp(std::round(std::ldexp(q.y, 34)), -34)};
+        return {std::ldexp(std::round(std::ldexp(q.x, 30)), -30), std::ldexp(std::round(std::ldexp(q.y, 30)), -30)};
     }
     Vec2 to_plane(const Vec3& p) const { return rounded(frame.to_plane(p) / diameter); }
     Vec3 lift(const Vec2& q) const { return frame.lift(q * diameter); }

@@ -119,6 +119,17 @@ private:
     const AdaptiveObservers& observers_;
 };
 
+/// The uniform mesh to begin with. An automatic one leaves three quarters of the budget to refinement.
+PatchMesh first_mesh(const Scene& scene, const AdaptiveOptions& options)
+{
+    PatchMesh mesh = triangulate(scene, options.meshing);
+    const bool automatic = options.meshing.max_edge <= 0 && options.meshing.max_elements == 0;
+    if (options.refine == Refine::none || !automatic || 4 * mesh.patch_count() <= options.max_elements) return mesh;
+    MeshingOptions coarser = options.meshing;
+    coarser.max_elements = options.max_elements / 4;
+    return triangulate(scene, coarser);
+}
+
 bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const RefinementPlan& plan, int cycle,
               const AdaptiveOptions& options)
 {
@@ -141,7 +152,7 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                                   const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
-    PatchMesh mesh = start ? std::move(start->mesh) : triangulate(scene, options.meshing);
+    PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
 
     for (int cycle = start ? start->cycle : 0;; ++cycle) {

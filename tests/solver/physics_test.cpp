@@ -187,11 +187,11 @@ TEST(Solution, ResumedAfterAnyCycleEndsTheSame)
         if (step.stage == Stage::final) return;
         stored.push_back({step.cycle, PatchMesh(scene, step.mesh.arrays()), step.B, step.error});
     };
-    const AdaptiveSolution whole = solve_adaptively(scene, quick(1500), observers);
+    const AdaptiveSolution whole = solve_adaptively(scene, quick(3000), observers);
     ASSERT_GE(stored.size(), 2U);
     for (AdaptiveStart& start : stored) {
         const int cycle = start.cycle;
-        EXPECT_TRUE(same(whole, solve_adaptively(scene, quick(1500), {}, std::move(start)))) << "after cycle " << cycle;
+        EXPECT_TRUE(same(whole, solve_adaptively(scene, quick(3000), {}, std::move(start)))) << "after cycle " << cycle;
     }
 }
 

@@ -1,0 +1,100 @@
+// The Cornell box beside exact direct light (reference-values.md §3) and the path-traced points.
+#include "meshing/read_scene.h"
+#include "solver/adaptive.h"
+#include "tests/verification/point_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace patchlight {
+namespace {
+
+using verification::point_error;
+using verification::PointError;
+
+Scene cornell_box()
+{
+    SceneOptions options;
+    options.unit = 1e-3;
+    return read_scene(PATCHLIGHT_DATA "/scenes/cornell-box.obj", options).scene;
+}
+
+AdaptiveSolution solve(const Scene& scene, Refine refine, std::size_t elements)
+{
+    AdaptiveOptions options;
+    options.refine = refine;
+    options.max_elements = elements;
+    if (refine == Refine::none) options.meshing.max_elements = elements;
+    return solve_adaptively(scene, options);
+}
+
+struct DirectFactor {
+    Vec3 point, normal;
+    double factor;  // with both blocks, exact
+    double unoccluded;
+};
+
+const std::vector<DirectFactor> direct_factors{
+    {{278, 0, 279.5}, {0, 1, 0}, 0.010484630958, 0.014206957932},
+    {{70, 0, 250}, {0, 1, 0}, 0.010795472206, 0.010894447526},
+    {{400, 0, 150}, {0, 1, 0}, 0.011694970340, 0.011694970340},
+    {{500, 0, 420}, {0, 1, 0}, 0, 0.0095010552},
+    {{185, 165, 170}, {0, 1, 0}, 0.022291341194, 0.022291341194},
+    {{0, 200, 200}, {1, 0, 0}, 0.009822520488, 0.009822520488},
+    {{278, 200, 559.2}, {0, 0, -1}, 0.010396475081, 0.010396475081},
+    {{400, 50, 559.2}, {0, 0, -1}, 0, 0.005108767452},
+};
+
+// 3 % of the unoccluded value: in an umbra the exact value is 0.
+TEST(CornellBox, DirectFactorsOnTheAdaptedMesh)
+{
+    const Scene scene = cornell_box();
+    const AdaptiveSolution solution = solve(scene, Refine::intensity, 20000);
+    const RayCaster caster(scene);
+    const PatchLocator locator(solution.mesh);
+    const Exchange exchange{scene, caster, solution.mesh, locator};
+    // One bounce from the emitters alone, on the solved mesh's own vertices.
+    const Reconstruction direct = reconstruct(exchange, emittance(scene, solution.mesh), {});
+    Rgb E(0.0);
+    for (const Material& m : scene.materials) E = glm::max(E, m.emission);
+    for (const DirectFactor& known : direct_factors) {
+        const Vec3 p = known.point * scene.unit - scene.center;
+        const Rgb B = verification::radiosity_at(scene, solution.mesh, locator, direct.B, known.point, known.normal);
+        const Rgb rho = [&] {
+            for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+                const PlaneFrame& frame = scene.surfaces[s].frame;
+                if (glm::dot(frame.n, known.normal) > 0.99 && std::abs(glm::dot(p - frame.origin, frame.n)) < 1e-6)
+                    return scene.material_of(SurfaceId(s)).reflectance;
+            }
+            return Rgb(0.0);
+        }();
+        const double factor = B.r / (rho.r * E.r);
+        std::printf("(%g, %g, %g): %.9f, exact %.9f\n", known.point.x, known.point.y, known.point.z, factor,
+                    known.factor);
+        EXPECT_NEAR(factor, known.factor, 0.03 * known.unoccluded);
+    }
+}
+
+TEST(CornellBox, ErrorBesideThePathTracedReference)
+{
+    const Scene scene = cornell_box();
+    const auto points = verification::read_reference_points(PATCHLIGHT_DATA "/reference/cornell-box-points.csv");
+    ASSERT_EQ(points.size(), 2000U);
+    const AdaptiveSolution adaptive = solve(scene, Refine::intensity, 20000);
+    const AdaptiveSolution uniform = solve(scene, Refine::none, adaptive.mesh.patch_count());
+    const PointError after = point_error(scene, adaptive.mesh, adaptive.vertex_B, points);
+    const PointError before = point_error(scene, uniform.mesh, uniform.vertex_B, points);
+    std::printf("adaptive %zu elements: relative L2 %.2f %%, relative RMS %.2f %%, estimated %.2f %%\n",
+                adaptive.mesh.patch_count(), 100 * after.relative_l2, 100 * after.relative_rms,
+                100 * adaptive.error.relative);
+    std::printf("uniform  %zu elements: relative L2 %.2f %%, relative RMS %.2f %%, estimated %.2f %%\n",
+                uniform.mesh.patch_count(), 100 * before.relative_l2, 100 * before.relative_rms,
+                100 * uniform.error.relative);
+    EXPECT_LE(after.relative_l2, 0.025);
+    EXPECT_LT(after.relative_l2, before.relative_l2);
+    EXPECT_LE(std::abs(adaptive.energy.relative_residual), 1e-2) << "open in front: what escapes is sampled, too";
+}
+
+}  // namespace
+}  // namespace patchlight
