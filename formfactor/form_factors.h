@@ -22,7 +22,7 @@ struct FormFactorOptions {
     FormFactorMethod method = FormFactorMethod::hemisphere;
     HemisphereDirections directions = HemisphereDirections::stratified;
     int rays = 512;        ///< per patch, 16 … 65536; rounded up to what the directions allow
-    int shadow_rays = 16;  ///< per patch and small source, 4 … 4096
+    int shadow_rays = 16;  ///< per patch, shared among small sources by their factors (16 each at least), 4 … 4096
     double small_source =
         0.2;  ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
     std::uint64_t seed = 1;

@@ -10,6 +10,7 @@ namespace patchlight {
 namespace {
 
 constexpr int set_count = 32;
+constexpr int least_shadow_rays = 16;
 constexpr std::uint64_t shadow_stream = 0x5ad0ULL << 48;  // other random numbers than the directions'
 
 }  // namespace
@@ -191,8 +192,9 @@ void RowSampler::swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch
     RandomNumbers random(options_.seed, shadow_stream ^ key);
     double swapped = 0;
     for (const auto& [s, factor] : scratch.small) {
-        swapped +=
-            visible_factor(caster_, sources_[s], scratch.receivers, options_.shadow_rays, random, scratch.shadow);
+        const int rays = std::max(least_shadow_rays, static_cast<int>(options_.shadow_rays * factor / unoccluded));
+        swapped += visible_factor(caster_, sources_[s], scratch.receivers, std::min(rays, options_.shadow_rays), random,
+                                  scratch.shadow);
         scratch.traced += scratch.shadow.blocked.size();
         const SurfaceId surface = sources_[s].surface();
         const PlaneFrame& frame = scene_.surface(surface).frame;

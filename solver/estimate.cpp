@@ -137,10 +137,9 @@ RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstima
     RefinementPlan plan;
     double held = 0;
     for (const std::uint32_t i : order) {
-        const bool enough =
-            options.marking == Marking::doerfler
-                ? held >= options.share * all
-                : static_cast<double>(plan.splits.size()) >= options.share * static_cast<double>(mesh.patch_count());
+        const double split = static_cast<double>(plan.splits.size()) / static_cast<double>(mesh.patch_count());
+        const bool enough = options.marking == Marking::doerfler ? held >= options.share * all && split >= options.least
+                                                                 : split >= options.share;
         if (enough) break;
         const PatchId p(i);
         plan.splits.push_back({p, 0});

@@ -46,7 +46,8 @@ enum class Marking {
 
 struct MarkOptions {
     Marking marking = Marking::doerfler;
-    double share = 0.75;     ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
+    double share = 0.75;  ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
+    double least = 0.1;   ///< of the patches are split in any case: a few with huge errors must not cost a cycle each
     double smallest = 1e-4;  ///< patches whose longest edge is below this × diameter are left alone
 };
 

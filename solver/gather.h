@@ -12,7 +12,7 @@ namespace patchlight {
 /// rays over the hemisphere that bring B of the patches they meet.
 struct GatherOptions {
     int rays = 512;             ///< over the hemisphere, 16 … 65536
-    int shadow_rays = 1024;     ///< per emitter, where it is partly hidden, 16 … 65536
+    int shadow_rays = 1024;     ///< per point, shared among partly hidden emitters by their factors, 16 … 65536
     double small_source = 0.2;  ///< as in FormFactorOptions
     double crease_angle =
         30;  ///< degrees: facets of one material that meet at less share irradiance at common vertices
