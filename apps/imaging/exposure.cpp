@@ -1,5 +1,8 @@
 #include "apps/imaging/exposure.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -44,8 +47,10 @@ Image to_srgb(const Image& radiance, double exposure)
 {
     Image result(radiance.width, radiance.height);
     const double scale = std::exp2(exposure);
-    std::transform(radiance.rgb.begin(), radiance.rgb.end(), result.rgb.begin(), [&](float value) {
-        return static_cast<float>(srgb_encoded(scale * static_cast<double>(value)));
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.rgb.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            result.rgb[i] = static_cast<float>(srgb_encoded(scale * static_cast<double>(radiance.rgb[i])));
+        }
     });
     return result;
 }

@@ -62,6 +62,7 @@ int run_and_report(int argc, const char* const* argv, Session& session)
 
 int main(int argc, char** argv)
 {
+    patchlight::keep_standard_descriptors();
     patchlight::Messages messages;
     patchlight::Interruption interruption;
     patchlight::FileWriter writer;

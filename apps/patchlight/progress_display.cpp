@@ -9,6 +9,8 @@ namespace patchlight {
 
 namespace {
 
+constexpr std::chrono::milliseconds between_drawings{100};
+
 std::string bar(double fraction)
 {
     constexpr int width = 20;
@@ -36,7 +38,10 @@ void ProgressDisplay::show(const Progress& progress)
         stage_ = progress.stage;
         cycle_ = progress.cycle;
         stage_start_ = now;
+    } else if (now - drawn_at_ < between_drawings) {
+        return;
     }
+    drawn_at_ = now;
     const double seconds = std::chrono::duration<double>(now - stage_start_).count();
     std::string text = fmt::format("\r\x1b[2K{} cycle {} {:<9} {} elements", bar(progress.fraction), progress.cycle,
                                    progress.stage, progress.elements);

@@ -28,6 +28,7 @@ private:
     std::string stage_;
     int cycle_ = -1;
     Clock::time_point stage_start_{};
+    Clock::time_point drawn_at_{};
 };
 
 }  // namespace patchlight

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <fcntl.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -80,6 +81,18 @@ void Messages::note(std::string_view text) const
 void Messages::raw(std::string_view text) const
 {
     (void)write_all(STDERR_FILENO, text);
+}
+
+void keep_standard_descriptors()
+{
+    // For reading only: what is written there still fails, and is reported.
+    int descriptor = 0;
+    do {
+        descriptor = ::open("/dev/null", O_RDONLY);
+    } while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+    if (descriptor >= 0) {
+        ::close(descriptor);
+    }
 }
 
 void write_result(std::string_view text)

@@ -29,6 +29,10 @@ private:
     bool color_ = false;
 };
 
+/// Takes the places of standard descriptors that the caller closed, so that no file of ours is opened there and
+/// written into by a message.
+void keep_standard_descriptors();
+
 /// Writes results to standard output. Throws PipeClosed when the reader has gone, OutputError when it can't be
 /// written for another reason.
 void write_result(std::string_view text);

@@ -98,10 +98,10 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
             fmt::format("{}: run.json can't be read ({}); name a new folder", folder_.string(), problem.what()));
     }
     if (!same_run(stored.record.identity, identity)) {
+        const bool options = stored.record.identity.options != identity.options;
         throw FolderRefused(fmt::format("{} holds a run {}; name a new folder", folder_.string(),
-                                        stored.record.identity.content_sha256 == identity.content_sha256
-                                            ? "with other options"
-                                            : "of another scene, or of an earlier state of this one"));
+                                        options ? "with other options"
+                                                : "of another scene, or of an earlier state of this one"));
     }
     const bool finished =
         stored.record.status == RunStatus::finished || stored.record.status == RunStatus::not_converged;
