@@ -20,11 +20,18 @@ public:
     Interrupted() : std::runtime_error("interrupted") {}
 };
 
+/// Where a long loop stands.
+struct WorkState {
+    double fraction = 0;   ///< done, 0 … 1
+    std::size_t rays = 0;  ///< traced so far
+    double unshot = -1;    ///< share of the emitted power not yet shot; -1 = does not apply
+};
+
 /// Who watches a long loop, and who may stop it.
 struct WorkMonitor {
     std::stop_token stop;
-    /// Called from one thread at a time with the share that is done.
-    std::function<void(double fraction)> tell;
+    /// Called from one thread at a time.
+    std::function<void(const WorkState&)> tell;
 };
 
 /// Calls work(i, scratch) for every i in [0, n) on all threads, with one Scratch a thread, in blocks of 32.
@@ -36,21 +43,20 @@ std::size_t for_each_row(std::size_t n, const WorkMonitor& monitor, const Work& 
     constexpr std::size_t block = 32;
     const std::size_t blocks = (n + block - 1) / block;
     tbb::enumerable_thread_specific<Scratch> scratches;
-    std::atomic<std::size_t> done{0};
+    std::atomic<std::size_t> done{0}, rays{0};
     std::mutex telling;
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
         if (monitor.stop.stop_requested()) return;
         Scratch& scratch = scratches.local();
+        const std::size_t before = scratch.traced;
         for (std::size_t i = b * block; i < std::min(n, (b + 1) * block); ++i) work(i, scratch);
-        const std::size_t now = ++done;
+        const std::size_t now = ++done, traced = rays += scratch.traced - before;
         if (!monitor.tell) return;
         if (const std::unique_lock lock(telling, std::try_to_lock); lock.owns_lock())
-            monitor.tell(static_cast<double>(now) / static_cast<double>(blocks));
+            monitor.tell({static_cast<double>(now) / static_cast<double>(blocks), traced});
     });
     if (monitor.stop.stop_requested()) throw Interrupted();
-    std::size_t traced = 0;
-    for (const Scratch& scratch : scratches) traced += scratch.traced;
-    return traced;
+    return rays;
 }
 
 }  // namespace patchlight

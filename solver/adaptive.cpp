@@ -33,11 +33,13 @@ class Cycle {
         WorkMonitor monitor{observers_.stop, {}};
         Progress progress{name, number_, 0, exchange_.mesh.patch_count()};
         if (observers_.on_progress)
-            monitor.tell = [this, progress](double fraction) mutable {
-                progress.fraction = fraction;
+            monitor.tell = [this, progress](const WorkState& state) mutable {
+                progress.fraction = state.fraction;
+                progress.rays = state.rays;
+                progress.unshot = state.unshot;
                 observers_.on_progress(progress);
             };
-        if (monitor.tell) monitor.tell(0);
+        if (monitor.tell) monitor.tell({});
         const auto begin = std::chrono::steady_clock::now();
         auto result = work(monitor);
         spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
