@@ -68,6 +68,8 @@ PatchMesh::PatchMesh(const Scene& scene, PatchMeshArrays arrays)
         const auto face = mesh.add_face(handle(c[0]), handle(c[1]), handle(c[2]));
         if (!face.is_valid()) throw std::invalid_argument("patch mesh: the triangles of a surface aren't a manifold");
     }
+    for (const auto v : mesh.vertices())
+        if (!mesh.is_manifold(v)) throw std::invalid_argument("patch mesh: patches meet in a vertex only");
 }
 
 Vec3 PatchMesh::centroid(PatchId patch) const
