@@ -19,10 +19,11 @@ constexpr int most_threads = 1024;
 struct Texts {
     std::vector<std::string> two_sided, emitters;
     std::string refine = "intensity", solver = "gauss-seidel", method = "hemisphere", indicator = "residual",
-                marking = "doerfler", pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto",
+                marking = "doerfler", directions = "stratified", order = "unshot-power", pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto",
                 cycle = "last", from, to, up = "0,1,0";
     double max_edge = 0, fov = 0;
     CLI::Option* max_elements_option = nullptr;
+    CLI::Option* tolerance_option = nullptr;
 };
 
 template <class Mode>
@@ -101,14 +102,26 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--solver", t.solver, "of the final solve")
         ->check(CLI::IsMember(words(solver_names())))
         ->capture_default_str();
-    app.add_option("--tolerance", o.final.tolerance, "of the final solve")
-        ->check(number_between(1e-12, 0.5))
-        ->type_name("T")
+    t.tolerance_option = app.add_option("--tolerance", o.final.tolerance,
+                                        "of the final solve; progressive: 0.01 unless given")
+                             ->check(number_between(1e-12, 0.5))
+                             ->type_name("T")
+                             ->capture_default_str();
+    app.add_option("--order", t.order, "what progressive shoots first")
+        ->check(CLI::IsMember(words(order_names())))
         ->capture_default_str();
     app.add_option("--form-factors", t.method, "how form factors are found")
         ->check(CLI::IsMember(words(form_factor_names())))
         ->capture_default_str();
     app.add_option("--rays", o.form_factors.rays, "form-factor rays per patch")
+        ->check(whole_between(16, 65536))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--directions", t.directions, "of the rays over the hemisphere")
+        ->check(CLI::IsMember(words(direction_names())))
+        ->capture_default_str();
+    app.add_option("--shadow-rays", o.gather.shadow_rays,
+                   "per vertex, shared among the lamps that are partly hidden from it")
         ->check(whole_between(16, 65536))
         ->type_name("N")
         ->capture_default_str();
@@ -165,7 +178,11 @@ void finish_solve(SolveCommand& c, const Texts& t)
     AdaptiveOptions& o = c.options;
     o.refine = mode_of(refine_names(), t.refine);
     o.final.solver = mode_of(solver_names(), t.solver);
+    // Shots are dear: a sweep of gathering costs what a few of them do.
+    if (o.final.solver == Solver::progressive && t.tolerance_option->count() == 0) o.final.tolerance = 0.01;
+    o.final.order = mode_of(order_names(), t.order);
     o.form_factors.method = mode_of(form_factor_names(), t.method);
+    o.form_factors.directions = mode_of(direction_names(), t.directions);
     o.estimate.indicator = mode_of(indicator_names(), t.indicator);
     o.mark.marking = mode_of(marking_names(), t.marking);
     o.gather.seed = o.form_factors.seed;

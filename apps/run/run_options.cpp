@@ -34,6 +34,21 @@ const ModeNames<Marking>& marking_names()
     return names;
 }
 
+const ModeNames<HemisphereDirections>& direction_names()
+{
+    static const ModeNames<HemisphereDirections> names{{"stratified", HemisphereDirections::stratified},
+                                                       {"regular-grid", HemisphereDirections::regular_grid},
+                                                       {"lecture-grid", HemisphereDirections::lecture_grid}};
+    return names;
+}
+
+const ModeNames<ShootingOrder>& order_names()
+{
+    static const ModeNames<ShootingOrder> names{{"unshot-power", ShootingOrder::unshot_power},
+                                                {"unshot-radiosity", ShootingOrder::unshot_radiosity}};
+    return names;
+}
+
 const ModeNames<Stage>& stage_names()
 {
     static const ModeNames<Stage> names{{"uniform", Stage::uniform},
@@ -61,17 +76,8 @@ Json json_of(const SolveOptions& options)
     return {{"solver", name_of(solver_names(), options.solver)},
             {"tolerance", options.tolerance},
             {"max_sweeps", options.max_sweeps},
-            {"order", options.order == ShootingOrder::unshot_power ? "unshot-power" : "unshot-radiosity"}};
-}
-
-std::string name_of_directions(HemisphereDirections directions)
-{
-    switch (directions) {
-    case HemisphereDirections::stratified: return "stratified";
-    case HemisphereDirections::regular_grid: return "regular-grid";
-    case HemisphereDirections::lecture_grid: return "lecture-grid";
-    }
-    return "unknown";
+            {"order", name_of(order_names(), options.order)},
+            {"ambient", options.ambient}};
 }
 
 }  // namespace
@@ -88,7 +94,7 @@ Json json_of(const AdaptiveOptions& o)
               {"max_elements", o.meshing.max_elements}}},
             {"form_factors",
              {{"method", name_of(form_factor_names(), o.form_factors.method)},
-              {"directions", name_of_directions(o.form_factors.directions)},
+              {"directions", name_of(direction_names(), o.form_factors.directions)},
               {"rays", o.form_factors.rays},
               {"shadow_rays", o.form_factors.shadow_rays},
               {"small_source", o.form_factors.small_source},
@@ -98,10 +104,15 @@ Json json_of(const AdaptiveOptions& o)
             {"gather",
              {{"rays", o.gather.rays},
               {"shadow_rays", o.gather.shadow_rays},
+              {"small_source", o.gather.small_source},
               {"crease_angle", o.gather.crease_angle},
               {"seed", o.gather.seed}}},
-            {"estimate", {{"indicator", name_of(indicator_names(), o.estimate.indicator)}}},
-            {"mark", {{"marking", name_of(marking_names(), o.mark.marking)}, {"share", o.mark.share}}}};
+            {"estimate", {{"indicator", name_of(indicator_names(), o.estimate.indicator)}, {"rays", o.estimate.rays}}},
+            {"mark",
+             {{"marking", name_of(marking_names(), o.mark.marking)},
+              {"share", o.mark.share},
+              {"least", o.mark.least},
+              {"smallest", o.mark.smallest}}}};
 }
 
 Json json_of(const SceneOptions& o)

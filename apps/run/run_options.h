@@ -23,6 +23,8 @@ const ModeNames<Solver>& solver_names();
 const ModeNames<FormFactorMethod>& form_factor_names();
 const ModeNames<Indicator>& indicator_names();
 const ModeNames<Marking>& marking_names();
+const ModeNames<HemisphereDirections>& direction_names();
+const ModeNames<ShootingOrder>& order_names();
 const ModeNames<Stage>& stage_names();
 
 /// The word for a mode.
