@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <numbers>
 
 namespace patchlight {
@@ -34,21 +35,16 @@ public:
 
     void refine()
     {
-        const std::size_t before = mesh_.n_vertices();
+        for (const FaceHandle face : mesh_.faces()) work_.push_back(face);
+        refine_sizes();
+        // The rule in may_split() ends angles' demands; should rounding defeat it, this does.
+        std::size_t left = 4 * mesh_.n_vertices() + 1000;
         for (const FaceHandle face : mesh_.faces()) work_.push_back(face);
         while (!work_.empty()) {
             const FaceHandle face = work_.front();
             work_.pop_front();
-            while (too_long(face)) insert_circumcentre(face);
-        }
-        // Angles come second, and never make more points than sizes did: an angle that the input forces could
-        // ask for ever.
-        std::size_t left = mesh_.n_vertices() - before + before / 8;
-        for (const FaceHandle face : mesh_.faces()) work_.push_back(face);
-        while (!work_.empty() && left > 0) {
-            const FaceHandle face = work_.front();
-            work_.pop_front();
-            for (int tries = 0; tries < 4 && left > 0 && too_sharp(face); ++tries, --left) insert_circumcentre(face);
+            while (too_long(face)) insert_circumcentre(face, 0);
+            while (left > 0 && too_sharp(face) && insert_circumcentre(face, shortest_edge(face))) --left;
         }
     }
 
@@ -124,38 +120,123 @@ private:
 
     bool on_border(HalfedgeHandle h) const { return mesh_.is_boundary(mesh_.edge_handle(h)); }
 
+    void refine_sizes()
+    {
+        while (!work_.empty()) {
+            const FaceHandle face = work_.front();
+            work_.pop_front();
+            while (too_long(face)) insert_circumcentre(face, 0);
+        }
+    }
+
+    double shortest_edge(FaceHandle face) const
+    {
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto h : mesh_.fh_range(face)) least = std::min(least, length2(h));
+        return std::sqrt(least);
+    }
+
     /// Puts a vertex into the circumcentre of a face, or, where a border lies in between or too near, into the
-    /// middle of that border's edge (Ruppert's rule).
-    void insert_circumcentre(FaceHandle face)
+    /// middle of that border's edge (Ruppert's rule). False when that would make an edge shorter than `no_shorter`.
+    bool insert_circumcentre(FaceHandle face, double no_shorter)
     {
         const auto c = corners(face);
         const Vec2 a = at(c[1]) - at(c[0]), b = at(c[2]) - at(c[0]);
         const double aa = glm::dot(a, a), bb = glm::dot(b, b), twice = 2 * (a.x * b.y - a.y * b.x);
         const Vec2 centre = plane_.rounded(at(c[0]) + Vec2(b.y * aa - a.y * bb, a.x * bb - b.x * aa) / twice);
 
-        const auto [target, blocking] = walk(face, centre);
-        if (blocking.is_valid()) return split_edge(blocking);
-        HalfedgeHandle h = mesh_.halfedge_handle(target);
-        for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h)) {
-            const Vec2 u = at(mesh_.from_vertex_handle(h)) - centre, v = at(mesh_.to_vertex_handle(h)) - centre;
-            if (on_border(h) && glm::dot(u, v) <= 0) return split_edge(h);
-            // On an edge it would leave a triangle without area.
-            if (u.x * v.y - u.y * v.x < 1e-3 * length2(h)) return split_edge(longest(target));
+        auto [target, blocking] = walk(face, centre);
+        if (!blocking.is_valid()) blocking = encroached(target, centre);
+        if (blocking.is_valid()) {
+            if (!may_split(blocking, no_shorter)) return false;
+            split_edge(blocking);
+            return true;
         }
         const VertexHandle vertex = add_vertex(plane_.lift(centre));
-        mesh_.split(target, vertex);
+        // On an edge it would leave a triangle without area.
+        HalfedgeHandle touched;
+        for (const auto h : mesh_.fh_range(target)) {
+            const Vec2 u = at(mesh_.from_vertex_handle(h)) - centre, v = at(mesh_.to_vertex_handle(h)) - centre;
+            if (u.x * v.y - u.y * v.x < 1e-3 * length2(h)) touched = h;
+        }
+        if (touched.is_valid())
+            mesh_.split(mesh_.edge_handle(touched), vertex);
+        else
+            mesh_.split(target, vertex);
         settle(vertex);
+        return true;
+    }
+
+    /// The first border edge that has q in its diametral circle, among the faces that have q in their circumcircle
+    /// and hang together with `start`, which contains q.
+    HalfedgeHandle encroached(FaceHandle start, const Vec2& q) const
+    {
+        std::vector<FaceHandle> cavity{start};
+        for (std::size_t i = 0; i < cavity.size(); ++i) {
+            for (const auto h : mesh_.fh_range(cavity[i])) {
+                if (on_border(h)) {
+                    const Vec2 u = at(mesh_.from_vertex_handle(h)) - q, v = at(mesh_.to_vertex_handle(h)) - q;
+                    if (glm::dot(u, v) <= 0) return h;
+                    continue;
+                }
+                const FaceHandle next = mesh_.opposite_face_handle(h);
+                if (std::find(cavity.begin(), cavity.end(), next) == cavity.end() && in_circumcircle(next, q))
+                    cavity.push_back(next);
+            }
+        }
+        return HalfedgeHandle();
+    }
+
+    bool in_circumcircle(FaceHandle face, const Vec2& q) const
+    {
+        const auto c = corners(face);
+        const auto point = [](const Vec2& p) { return Kernel::Point_2(p.x, p.y); };
+        return CGAL::side_of_oriented_circle(point(at(c[0])), point(at(c[1])), point(at(c[2])), point(q)) ==
+               CGAL::ON_POSITIVE_SIDE;
+    }
+
+    /// Splitting a border edge for an angle's sake must not bring vertices nearer to each other than they are: at a
+    /// sharp corner of the input both borders would ask each other for halves for ever [MillerPavWalkington03]. Half
+    /// of the distance is let pass: corners above 30°, and corners of the input near a border, need it.
+    bool may_split(HalfedgeHandle h, double no_shorter) const
+    {
+        if (no_shorter <= 0) return true;
+        const HalfedgeHandle border = mesh_.is_boundary(h) ? h : mesh_.opposite_halfedge_handle(h);
+        const HalfedgeHandle next = mesh_.next_halfedge_handle(border), before = mesh_.prev_halfedge_handle(border);
+        const double half = 0.5 * std::sqrt(length2(h));
+        const Vec2 a = at(mesh_.from_vertex_handle(border)), b = at(mesh_.to_vertex_handle(border));
+        const double sine = std::min(sine_between(b, a, at(mesh_.to_vertex_handle(next))),
+                                     sine_between(a, b, at(mesh_.from_vertex_handle(before))));
+        return half * sine >= 0.5 * no_shorter;
+    }
+
+    /// Sine of the angle at `apex` of two border edges, 1 when it is obtuse.
+    static double sine_between(const Vec2& apex, const Vec2& a, const Vec2& b)
+    {
+        const Vec2 u = a - apex, v = b - apex;
+        if (glm::dot(u, v) <= 0) return 1;
+        return std::abs(u.x * v.y - u.y * v.x) / std::sqrt(glm::dot(u, u) * glm::dot(v, v));
     }
 
     /// The face that contains q, or the border edge that stops the way to it.
     std::pair<FaceHandle, HalfedgeHandle> walk(FaceHandle face, const Vec2& q) const
     {
+        const auto c = corners(face);
+        const Vec2 start = (at(c[0]) + at(c[1]) + at(c[2])) / 3.0;
         HalfedgeHandle entered;
         for (;;) {
-            HalfedgeHandle h = mesh_.halfedge_handle(face), way_out;
-            for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h))
-                if (h != entered && cross2(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), q) < 0)
+            HalfedgeHandle way_out;
+            double best = -std::numeric_limits<double>::infinity();
+            for (const auto h : mesh_.fh_range(face)) {
+                const Vec2 &a = at(mesh_.from_vertex_handle(h)), &b = at(mesh_.to_vertex_handle(h));
+                if (h == entered || cross2(a, b, q) >= 0) continue;
+                // The edge that the straight way crosses has its ends on either side.
+                const double between = std::min(-cross2(start, q, a), cross2(start, q, b));
+                if (between > best) {
+                    best = between;
                     way_out = h;
+                }
+            }
             if (!way_out.is_valid() || on_border(way_out)) return {face, way_out};
             entered = mesh_.opposite_halfedge_handle(way_out);
             face = mesh_.face_handle(entered);
