@@ -86,7 +86,9 @@ TEST_F(NarrowPenumbra, ErrorAgainstElements)
                     uniform.error.relative, count(adaptive), error(adaptive), adaptive.error.relative);
         adaptive_error.push_back(error(adaptive));
         adaptive_count.push_back(static_cast<double>(count(adaptive)));
-        if (n >= 256) EXPECT_LE(adaptive.mesh.patch_count(), n) << "64 is fewer than the mesh begins with";
+        if (n >= 256) {
+            EXPECT_LE(adaptive.mesh.patch_count(), n) << "64 is fewer than the mesh begins with";
+        }
         // The indicator tracks the error: it is judged against the same light with the same rays.
         EXPECT_NEAR(adaptive.error.relative / error(adaptive), 1, 0.5) << n;
         if (n < 256) continue;
