@@ -34,6 +34,17 @@ TEST_F(SameBytesTest, WithOneThreadAndWithTwo)
     expect_same("one", "two");
 }
 
+TEST_F(SameBytesTest, TheCornellBoxWithOneThreadAndWithTwo)
+{
+    // Blocks that hide the light from many patches: more ways through the code than the small room has.
+    for (const char* threads : {"1", "2"}) {
+        const Outcome outcome = run({"solve", PATCHLIGHT_DATA "/scenes/cornell-box.obj", "-o", path(threads), "--unit",
+                                     "mm", "--max-elements", "1500", "--size", "40x40", "--threads", threads});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    expect_same("1", "2");
+}
+
 TEST_F(SameBytesTest, FromAnotherFolderAndOnATerminalWithoutColours)
 {
     solve_into("here");
