@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace patchlight {
 
@@ -115,7 +116,7 @@ std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column
             }
             RandomNumbers random(options_.seed, shadow_stream ^ (static_cast<std::uint64_t>(shooter.value) << 32) ^ j);
             column[j] = visible_factor(caster_, source, scratch.receivers, shadow_rays, random, scratch.shadow);
-            scratch.traced += scratch.shadow.blocked.size();
+            scratch.traced += std::exchange(scratch.shadow.traced, 0);
         });
     return traced + own.traced;
 }
@@ -195,7 +196,7 @@ void RowSampler::swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch
         const int rays = std::max(least_shadow_rays, static_cast<int>(options_.shadow_rays * factor / unoccluded));
         swapped += visible_factor(caster_, sources_[s], scratch.receivers, std::min(rays, options_.shadow_rays), random,
                                   scratch.shadow);
-        scratch.traced += scratch.shadow.blocked.size();
+        scratch.traced += std::exchange(scratch.shadow.traced, 0);
         const SurfaceId surface = sources_[s].surface();
         const PlaneFrame& frame = scene_.surface(surface).frame;
         for (const VisibleSample& sample : scratch.shadow.visible) {

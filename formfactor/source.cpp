@@ -116,6 +116,7 @@ std::pair<double, double> trace_strata(const RayCaster& caster, const Source& so
     }
     scratch.rays.resize(traced);
     caster.occluded(scratch.rays, scratch.blocked);
+    scratch.traced += traced;
     double seen = 0;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < traced; ++k)

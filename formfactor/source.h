@@ -59,6 +59,7 @@ struct ShadowScratch {
     std::vector<std::uint8_t> blocked;
     std::vector<double> weights;
     std::vector<VisibleSample> visible;  ///< out: weights sum to the factor
+    std::size_t traced = 0;              ///< rays since the scratch was made
 };
 
 /// The factor of a source: Lambert's formula (mean over the receivers) times the visible fraction, which shadow

@@ -29,8 +29,8 @@ SceneInput load_scene(const SceneArguments& arguments)
 std::vector<std::string> first_hit_warnings(const FirstHits& hits)
 {
     std::vector<std::string> warnings;
-    // A floor under standing boxes meets their backs too; in furnished rooms that is below this.
-    if (hits.backs > 0.1) {
+    // Covered floor isn't counted: what is left should be nothing but slits.
+    if (hits.backs > 0.01) {
         warnings.push_back(fmt::format("{:.1f} % of the rays from the surfaces' fronts meet black backs first: "
                                        "the winding may be mixed, or --two-sided is wanted",
                                        100 * hits.backs));
