@@ -125,7 +125,8 @@ TEST(Hemicube, AllPixelsSumToOneWithSecondOrder)
 }
 
 // Only the pixels on the outline err, each by up to half its ΔF and as good as at random: R of them of 1/R² each,
-// an error of R^-1.5. From 32 to 512 that is 64 times; 20 leaves room for chance over 40 turns.
+// an error of R^-1.5 (edges along the pixels' rows err together, R^-1, but few turns bring that about). From 32 to
+// 512 that is 64 times; 20 leaves room for chance over 40 turns.
 TEST(Hemicube, SquareLightConvergesToLambert)
 {
     const std::vector<Vec3> light{{-0.3, -0.4, 1}, {-0.3, 0.6, 1}, {0.7, 0.6, 1}, {0.7, -0.4, 1}};
