@@ -31,7 +31,7 @@ struct HemicubeSums {
 /// resolution × resolution/2 on each side, an item and a depth per pixel [CohenGreenberg85]. A pixel sees what its
 /// centre sees. One object a thread: buffers are kept from call to call.
 /// An outline that runs along the pixels' rows errs all along by up to half a pixel, 1 % of a factor of 0.2 at 128;
-/// others err at random, about a fifth of that: hence a random turn for each patch.
+/// others err at random, 0.03 % there in the median: hence a random turn for each patch.
 /// Pixels are numbered in rows of `resolution`: the top (rows along v), then the sides +u, −u, +v, −v (rows from the
 /// horizon upwards).
 class Hemicube {
