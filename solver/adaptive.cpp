@@ -6,6 +6,13 @@ namespace patchlight {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
 /// What one solve left: how it went, where the light went, and the linear reconstruction.
 struct Solved {
     SolveReport report;
@@ -40,9 +47,9 @@ class Cycle {
                 observers_.on_progress(progress);
             };
         if (monitor.tell) monitor.tell({});
-        const auto begin = std::chrono::steady_clock::now();
+        const auto begin = Clock::now();
         auto result = work(monitor);
-        spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        spent += seconds_since(begin);
         return result;
     }
 
@@ -154,11 +161,14 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                                   const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
+    const auto begin = Clock::now();
     PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
+    double meshing = seconds_since(begin);  // of the mesh that the next cycle works on
 
     for (int cycle = start ? start->cycle : 0;; ++cycle) {
         Cycle work(scene, caster, mesh, cycle, options, observers);
+        work.seconds.mesh = meshing;
         RefinementPlan plan;
         if (start) {  // this cycle was observed by the run that is continued
             plan = mark(scene, mesh, start->error, options.mark);
@@ -181,7 +191,9 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                         solved.energy,   solved.report, solved.report.converged && met};
             }
         }
+        work.seconds.mesh = 0;
         Refinement refined = work.refine(plan);
+        meshing = work.seconds.mesh;
         B = prolong(refined.mesh, B, refined.transfer);
         mesh = std::move(refined.mesh);
     }
