@@ -46,7 +46,8 @@ struct Refinement {
 /// The uniform mesh: per surface a constrained Delaunay triangulation of its polygon, refined by Delaunay
 /// meshing until no edge is longer than `max_edge` and no angle smaller than `min_angle`. With `max_elements`
 /// and no max_edge: the longest edge that gives between 0.8 N and N triangles (as near below N as the input's
-/// own edges permit). Surfaces are meshed independently, on all threads; the result does not depend on their number.
+/// own edges permit). A surface narrower than a sixtieth of the longest edge has no angle
+/// bound. Surfaces are meshed independently, on all threads; the result does not depend on their number.
 PatchMesh triangulate(const Scene& scene, const MeshingOptions& options);
 
 /// Refines what the plan asks for, and its neighbours as far as the shape bound needs it, by Delaunay refinement of

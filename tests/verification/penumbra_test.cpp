@@ -16,8 +16,8 @@ namespace {
 /// The scene, its receiver, and the exact B on a grid of points over it.
 class NarrowPenumbra : public ::testing::Test {
 protected:
-    static constexpr std::size_t side =
-        600;  // points along an edge: 30 across the penumbra's .0176 / 6 … enough for 3 digits
+    // Points along an edge: ten across the penumbra, which is .0176 wide.
+    static constexpr std::size_t side = 600;
 
     NarrowPenumbra() : scene(read_scene(PATCHLIGHT_DATA "/scenes/narrow-penumbra.obj").scene), exact(side * side)
     {
