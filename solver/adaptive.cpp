@@ -136,6 +136,10 @@ PatchMesh first_mesh(const Scene& scene, const AdaptiveOptions& options)
     if (options.refine == Refine::none || !automatic || 4 * mesh.patch_count() <= options.max_elements) return mesh;
     MeshingOptions coarser = options.meshing;
     coarser.max_elements = options.max_elements / 4;
+    mesh = triangulate(scene, coarser);
+    // Long narrow surfaces take most of a small budget for their angles' sake: then the budget comes first.
+    if (4 * mesh.patch_count() <= options.max_elements) return mesh;
+    coarser.min_angle = 0;
     return triangulate(scene, coarser);
 }
 
