@@ -7,7 +7,7 @@ namespace {
 
 struct CompactRow {
     std::vector<std::uint32_t> columns;
-    std::vector<float> factors;
+    std::vector<double> factors;
 };
 
 }  // namespace
@@ -26,7 +26,7 @@ FormFactorMatrix assemble_rows(const RowSampler& sampler, std::size_t patches, c
         rows[i].factors.reserve(row.patches.size());
         for (std::size_t k = 0; k < row.patches.size(); ++k) {
             rows[i].columns.push_back(row.patches[k].value);
-            rows[i].factors.push_back(static_cast<float>(row.factors[k]));
+            rows[i].factors.push_back(row.factors[k]);
         }
         F.raw_sum[PatchId(i)] = row.raw_sum;
         F.escaped[PatchId(i)] = row.escaped;

@@ -9,7 +9,15 @@
 
 namespace patchlight {
 
-enum class FormFactorMethod { hemisphere };
+/// How form factors are found.
+enum class FormFactorMethod {
+    closed_form,  ///< contour integrals of polygon pairs; what stands in between is not seen
+    hemicube,     ///< item buffers on half cubes over the patch
+    hemisphere,   ///< rays over the hemisphere from places all over the patch
+    quadrature,   ///< Gauss rules on both patches, subdivided, a visibility ray for each pair of nodes
+    exact,        ///< Lambert's formula on what clipping against the blockers leaves, integrated over the patch
+    monte_carlo   ///< random pairs of points and random rays, with a standard error
+};
 
 /// The set of directions over the hemisphere.
 enum class HemisphereDirections {
@@ -25,6 +33,8 @@ struct FormFactorOptions {
     int shadow_rays = 16;  ///< per patch, shared among small sources by their factors (16 each at least), 4 … 4096
     double small_source =
         0.2;  ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
+    int resolution = 256;    ///< hemicube: pixels along an edge, even, 4 … 4096
+    double tolerance = 0;    ///< quadrature, exact: error of a factor relative to the row; 0 = the method's own
     std::uint64_t seed = 1;
 };
 
@@ -37,13 +47,13 @@ struct FormFactorRow {
     double backs = 0;    ///< fraction that meets a black back
 };
 
-/// Rows of F, compressed. Not reciprocal: sampled rows only gather.
+/// Rows of F, compressed. Reciprocal for quadrature and exact; sampled rows only gather.
 struct FormFactorMatrix {
     std::vector<std::size_t> row_start;  ///< patches + 1
-    std::vector<std::uint32_t> columns;  ///< of each row, in order of first hit
-    std::vector<float> factors;
+    std::vector<std::uint32_t> columns;  ///< of each row, in order of first hit, or ascending
+    std::vector<double> factors;
     PatchField<double> raw_sum, escaped, backs;
-    std::size_t rays = 0;
+    std::size_t rays = 0;  ///< or pixels, or nodes
 
     std::size_t size() const { return row_start.empty() ? 0 : row_start.size() - 1; }
 };

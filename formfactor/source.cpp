@@ -1,5 +1,6 @@
 #include "formfactor/source.h"
 
+#include "formfactor/facets.h"
 #include "formfactor/lambert.h"
 
 #include <algorithm>
@@ -9,15 +10,6 @@ namespace patchlight {
 
 namespace {
 
-bool convex(const std::vector<Vec3>& polygon, const Vec3& normal)
-{
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()], &c = polygon[(i + 2) % polygon.size()];
-        if (glm::dot(glm::cross(b - a, c - b), normal) < 0) return false;
-    }
-    return true;
-}
-
 // Short of the source, relative to the ray: the source's own surface must not hide it.
 constexpr float nearly_there = 1 - 1e-5F;
 
@@ -25,20 +17,9 @@ constexpr float nearly_there = 1 - 1e-5F;
 
 Source::Source(const Scene& scene, SurfaceId surface) : surface_(surface), normal_(scene.surface(surface).frame.n)
 {
-    const auto& loops = scene.surface(surface).loops;
-    std::vector<Vec3> outer;
-    for (const std::uint32_t v : loops.front()) outer.push_back(scene.vertices[v]);
-    if (loops.size() == 1 && convex(outer, normal_)) {
-        pieces_.push_back(outer);
-    } else {
-        for (const SceneTriangle& t : scene.triangles) {
-            std::vector<Vec3> piece{scene.vertices[t.vertices[0]], scene.vertices[t.vertices[1]],
-                                    scene.vertices[t.vertices[2]]};
-            if (t.back == surface) std::swap(piece[1], piece[2]);
-            if (t.front == surface || t.back == surface) pieces_.push_back(std::move(piece));
-        }
-    }
-    if (pieces_.size() == 1 && outer.size() == 4) {
+    for (Facet& facet : facets_of(scene, surface)) pieces_.push_back(std::move(facet.corners));
+    if (pieces_.size() == 1 && pieces_[0].size() == 4) {
+        const std::vector<Vec3>& outer = pieces_[0];
         const Vec3 gap = outer[0] + outer[2] - outer[1] - outer[3];
         parallelogram_ = glm::dot(gap, gap) <= 1e-20 * glm::dot(outer[2] - outer[0], outer[2] - outer[0]);
     }

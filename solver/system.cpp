@@ -52,7 +52,7 @@ EnergyBalance energy_balance(const RadiositySystem& system, const Radiosity& B)
         const PatchId p(i);
         Rgb H(0.0);
         for (std::size_t k = system.F.row_start[i]; k < system.F.row_start[i + 1]; ++k)
-            H += static_cast<double>(system.F.factors[k]) * B[PatchId(system.F.columns[k])];
+            H += system.F.factors[k] * B[PatchId(system.F.columns[k])];
         const double A = system.area[p];
         energy.emitted += A * sum(system.E[p]);
         energy.absorbed += A * sum((1.0 - system.rho[p]) * H) + A * sum(B[p]) * system.F.backs[p];

@@ -15,7 +15,7 @@ namespace {
 // A triangle of a Delaunay mesh with longest edge L covers about a quarter of L².
 constexpr double area_per_squared_edge = 0.25;
 // A row of factors holds at most an entry a ray: a column and a factor. Beside it mesh, fields and their copies.
-constexpr double bytes_per_entry = 8, bytes_per_element = 1500;
+constexpr double bytes_per_entry = 12, bytes_per_element = 1500;
 
 double physical_memory()
 {

@@ -16,7 +16,7 @@ RadiositySystem three_patches()
     system.rho = PatchField<Rgb>(std::vector<Rgb>{Rgb(0.0), Rgb(0.5), Rgb(0.25, 0.5, 0.75)});
     system.F.row_start = {0, 2, 4, 7};
     system.F.columns = {1, 2, 0, 2, 0, 1, 2};
-    system.F.factors = {0.6F, 0.4F, 0.3F, 0.7F, 0.1F, 0.35F, 0.55F};
+    system.F.factors = {0.6, 0.4, 0.3, 0.7, 0.1, 0.35, 0.55};
     system.F.raw_sum = system.F.escaped = system.F.backs = PatchField<double>(3, 0.0);
     return system;
 }
@@ -32,9 +32,9 @@ TEST(ThreePatches, OneRowAtATimeOfGaussSeidel)
     Radiosity B = system.E;
     EXPECT_EQ(gather_row(system, B, PatchId(0UL)), Rgb(0.0)) << "the emitter reflects nothing";
     gather_row(system, B, PatchId(1UL));
-    EXPECT_NEAR(B[PatchId(1UL)].r, 1.5, 1e-7);  // the factors are floats
+    EXPECT_NEAR(B[PatchId(1UL)].r, 1.5, 1e-14);
     gather_row(system, B, PatchId(2UL));
-    EXPECT_NEAR(B[PatchId(2UL)].r, 0.38125, 1e-7);
+    EXPECT_NEAR(B[PatchId(2UL)].r, 0.38125, 1e-14);
     EXPECT_EQ(B[PatchId(2UL)].b, 0) << "no blue light in the room";
 }
 
@@ -44,8 +44,8 @@ TEST(ThreePatches, OneSweepOfJacobi)
     const RadiositySystem system = three_patches();
     Radiosity B = system.E;
     const SolveReport report = solve_gathering(system, B, {.solver = Solver::jacobi, .max_sweeps = 1});
-    EXPECT_NEAR(B[PatchId(1UL)].r, 1.5, 1e-7);
-    EXPECT_NEAR(B[PatchId(2UL)].r, 0.25, 1e-7);
+    EXPECT_NEAR(B[PatchId(1UL)].r, 1.5, 1e-14);
+    EXPECT_NEAR(B[PatchId(2UL)].r, 0.25, 1e-14);
     EXPECT_FALSE(report.converged);
     EXPECT_EQ(report.iterations, 1U);
 }
