@@ -29,7 +29,8 @@ public:
         const double coarse = rule(t, 5);
         const bool clear_cut = !any_cut_ || coarse == 0;
         if (clear_cut && unnoticed * free <= allowed) return coarse;
-        return quartered(t, coarse, allowed, most_quarterings);
+        // Two rules can agree by chance: what weighs in its row is looked at twice.
+        return quartered(t, coarse, allowed, most_quarterings, unnoticed * free > 4 * allowed ? 2 : 1);
     }
 
 private:
@@ -46,17 +47,17 @@ private:
         return 0.5 * glm::length(glm::cross(a, b)) * mean;
     }
 
-    double quartered(const Triangle& t, double coarse, double allowed, int more)
+    double quartered(const Triangle& t, double coarse, double allowed, int most, int least)
     {
         const Vec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
         const std::array<Triangle, 4> quarters{{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {bc, ca, ab}}};
         std::array<double, 4> fine{};
         double sum = 0;
         for (std::size_t k = 0; k < 4; ++k) sum += fine[k] = rule(quarters[k], 5);
-        if (more <= 1 || std::abs(sum - coarse) <= allowed) return sum;
+        if (most <= 1 || (least <= 1 && std::abs(sum - coarse) <= allowed)) return sum;
         sum = 0;
         // Errors of quarters are as good as independent.
-        for (std::size_t k = 0; k < 4; ++k) sum += quartered(quarters[k], fine[k], 0.5 * allowed, more - 1);
+        for (std::size_t k = 0; k < 4; ++k) sum += quartered(quarters[k], fine[k], 0.5 * allowed, most - 1, least - 1);
         return sum;
     }
 
@@ -66,14 +67,22 @@ private:
     bool any_cut_ = false;
 };
 
-/// The square of how far the nearest blocker's corner is from a polygon's middle.
+/// The square of how far the nearest blocker's rim is from a polygon's middle.
 double clearance(std::span<const Vec3> polygon, std::span<const BlockerView> blockers)
 {
     Vec3 middle(0.0);
     for (const Vec3& p : polygon) middle += p / static_cast<double>(polygon.size());
     double nearest = std::numeric_limits<double>::infinity();
-    for (const BlockerView& blocker : blockers)
-        for (const Vec3& p : blocker.corners) nearest = std::min(nearest, glm::dot(p - middle, p - middle));
+    for (const BlockerView& blocker : blockers) {
+        Vec3 last = blocker.corners.back();
+        for (const Vec3& p : blocker.corners) {
+            const Vec3 along = p - last, off = middle - last;
+            const double t = std::clamp(glm::dot(off, along) / glm::dot(along, along), 0.0, 1.0);
+            const Vec3 gap = off - t * along;
+            nearest = std::min(nearest, glm::dot(gap, gap));
+            last = p;
+        }
+    }
     return nearest;
 }
 
