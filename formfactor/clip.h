@@ -1,0 +1,22 @@
+#pragma once
+
+#include "meshing/vectors.h"
+
+#include <boost/container/small_vector.hpp>
+
+#include <span>
+
+namespace patchlight {
+
+/// The corners of a planar convex polygon, made and remade in hot loops: up to 8 without allocating.
+struct Polygon : boost::container::small_vector<Vec3, 8> {
+    using small_vector::small_vector;
+    // Boost's iterators aren't contiguous ones to C++20: std::span needs telling.
+    operator std::span<const Vec3>() const { return {data(), size()}; }
+};
+
+/// What of a convex polygon lies in front of a plane, dot(n, p) ≥ offset [SutherlandHodgman74]. Corners within `snap`
+/// of the plane (in the unit of dot(n, p)) count as in it; nothing is left when no corner is in front by more.
+void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, double snap, Polygon& kept);
+
+}  // namespace patchlight
