@@ -8,7 +8,7 @@ namespace patchlight {
 
 namespace {
 
-bool is_parallelogram(const std::vector<Vec3>& corners)
+bool is_parallelogram(std::span<const Vec3> corners)
 {
     if (corners.size() != 4) return false;
     const Vec3 gap = corners[0] + corners[2] - corners[1] - corners[3], diagonal = corners[2] - corners[0];
@@ -19,14 +19,24 @@ bool is_parallelogram(const std::vector<Vec3>& corners)
 
 FacetPoints::FacetPoints(std::span<const Facet> facets)
 {
-    for (std::size_t f = 0; f < facets.size(); ++f) add(facets[f], f);
+    for (std::size_t f = 0; f < facets.size(); ++f) add(facets[f].corners, f);
+    divide();
+}
+
+FacetPoints::FacetPoints(std::span<const Vec3> polygon)
+{
+    add(polygon, 0);
+    divide();
+}
+
+void FacetPoints::divide()
+{
     if (!(area_ > 0)) throw std::invalid_argument("a form factor needs facets with an area on both sides");
     for (Piece& piece : pieces_) piece.until /= area_;
 }
 
-void FacetPoints::add(const Facet& facet, std::size_t index)
+void FacetPoints::add(std::span<const Vec3> p, std::size_t index)
 {
-    const std::vector<Vec3>& p = facet.corners;
     const bool parallelogram = is_parallelogram(p);
     for (std::size_t k = 2; k < (parallelogram ? 3 : p.size()); ++k) {
         const Vec3 edge0 = p[k - 1] - p[0], edge1 = (parallelogram ? p[3] : p[k]) - p[0];

@@ -20,6 +20,8 @@ class FacetPoints {
 public:
     /// Throws std::invalid_argument when the facets have no area.
     explicit FacetPoints(std::span<const Facet> facets);
+    /// On one convex polygon.
+    explicit FacetPoints(std::span<const Vec3> polygon);
 
     /// u, v in (0, 1).
     FacetPoint at(double u, double v) const;
@@ -33,7 +35,8 @@ private:
         std::size_t facet = 0;
         bool parallelogram = false;
     };
-    void add(const Facet& facet, std::size_t index);
+    void add(std::span<const Vec3> polygon, std::size_t index);
+    void divide();
 
     std::vector<Piece> pieces_;
     double area_ = 0;

@@ -14,12 +14,12 @@
 /// Pairs of polygons whose form factors are known (reference-values.md §1, §2).
 namespace patchlight::testing {
 
-using Polygon = std::vector<Vec3>;
+using Corners = std::vector<Vec3>;
 
 struct KnownPair {
     std::string name;
-    Polygon from, to;
-    std::vector<Polygon> blockers;
+    Corners from, to;
+    std::vector<Corners> blockers;
     double factor = 0;
 };
 
@@ -37,7 +37,7 @@ struct PairScene {
         result.materials = {Material{}};
         add_surface(result, pair.from, 0);
         add_surface(result, pair.to, 0);
-        for (const Polygon& blocker : pair.blockers) add_surface(result, blocker, 0);
+        for (const Corners& blocker : pair.blockers) add_surface(result, blocker, 0);
         Vec3 least = result.vertices[0], most = least;
         for (const Vec3& p : result.vertices) {
             least = glm::min(least, p);
@@ -53,19 +53,19 @@ struct PairScene {
 };
 
 /// [0, x] × [0, y] at height z, seen from above.
-inline Polygon floor_of(double x, double y, double z = 0)
+inline Corners floor_of(double x, double y, double z = 0)
 {
     return {{0, 0, z}, {x, 0, z}, {x, y, z}, {0, y, z}};
 }
 
 /// The same seen from below.
-inline Polygon ceiling_of(double x, double y, double z)
+inline Corners ceiling_of(double x, double y, double z)
 {
     return {{0, 0, z}, {0, y, z}, {x, y, z}, {x, 0, z}};
 }
 
 /// A rectangle that leaves the floor at its edge x = 0, 0 ≤ y ≤ l, and makes the given angle with it.
-inline Polygon wall_of(double l, double height, double degrees)
+inline Corners wall_of(double l, double height, double degrees)
 {
     const double angle = degrees * std::numbers::pi / 180;
     const Vec3 up = height * Vec3(std::cos(angle), 0, std::sin(angle)), along(0, l, 0);
