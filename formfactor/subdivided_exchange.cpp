@@ -47,15 +47,26 @@ void halve(const Polygon& polygon, const Vec3& d, bool upper, Polygon& half)
         keep_front(polygon, -d, -middle, 0, half);
 }
 
-/// Slivers that rounding makes aren't polygons any more.
-bool has_area(const Polygon& polygon)
+/// Of corners that clipping put closer than `snap` together one stays: rounding decides which way their edge runs.
+void merge_corners(Polygon& polygon, double snap)
+{
+    Polygon kept;
+    for (const Vec3& p : polygon) {
+        const bool apart = kept.empty() || (glm::length(p - kept.back()) > snap && glm::length(p - kept[0]) > snap);
+        if (apart) kept.push_back(p);
+    }
+    polygon = kept;
+}
+
+/// What is thinner than coordinates are told apart is no polygon any more: rounding decides its shape.
+bool has_area(const Polygon& polygon, double snap)
 {
     if (polygon.size() < 3) return false;
     Vec3 twice(0.0);
     for (std::size_t k = 2; k < polygon.size(); ++k)
         twice += glm::cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
     const Vec3 d = longest_extent(polygon);
-    return glm::length(twice) > 1e-9 * glm::dot(d, d);
+    return glm::length(twice) > std::max(snap, 1e-9 * glm::length(d)) * glm::length(d);
 }
 
 std::array<std::uint8_t, nodes> shuffled(RandomNumbers& random)
@@ -100,7 +111,9 @@ double SubdividedExchange::add(std::span<const Vec3> a, const Vec3& normal_a, st
     Cell cell;
     keep_front(a, normal_b, glm::dot(normal_b, b[0]), blockers_.snap(), cell.a);
     keep_front(b, normal_a, glm::dot(normal_a, a[0]), blockers_.snap(), cell.b);
-    if (!has_area(cell.a) || !has_area(cell.b)) return 0;
+    merge_corners(cell.a, blockers_.snap());
+    merge_corners(cell.b, blockers_.snap());
+    if (!has_area(cell.a, blockers_.snap()) || !has_area(cell.b, blockers_.snap())) return 0;
     cell.blockers = std::make_shared<const std::vector<Blocker>>(std::move(found_));
     cell.root = roots_.size();
     cell.key = RandomNumbers(key_, cell.root).bits();
@@ -119,12 +132,14 @@ void SubdividedExchange::cut(const Cell& parent, bool upper, Cell& child, Scratc
     child.key = RandomNumbers(parent.key, upper ? 1 : 0).bits();
     if (glm::dot(extent_a, extent_a) >= glm::dot(extent_b, extent_b)) {
         halve(parent.a, extent_a, upper, child.a);
+        merge_corners(child.a, blockers_.snap());
         child.b = parent.b;
     } else {
         halve(parent.b, extent_b, upper, child.b);
+        merge_corners(child.b, blockers_.snap());
         child.a = parent.a;
     }
-    if (!has_area(child.a) || !has_area(child.b)) return;
+    if (!has_area(child.a, blockers_.snap()) || !has_area(child.b, blockers_.snap())) return;
     const Visibility visibility = sift({child.a, child.b}, *parent.blockers, blockers_.snap(), scratch.found);
     if (visibility == Visibility::hidden) return;
     child.unoccluded = polygon_exchange(child.a, child.b, exact_tolerance);
