@@ -38,7 +38,8 @@ class HalfRows {
 public:
     HalfRows(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const FormFactorOptions& options)
         : scene_(scene), caster_(caster), mesh_(mesh), options_(options), blockers_(scene)
-    {}
+    {
+    }
 
     HalfRow row(PatchId i, PairScratch& scratch) const
     {
@@ -61,8 +62,8 @@ private:
         const std::uint64_t key = (std::uint64_t{i.value} << 32) | j.value;
         const auto a = corners_of(mesh_, i), b = corners_of(mesh_, j);
         exchange.start(options_.seed, key);
-        const double unoccluded =
-            exchange.add(a, scene_.surface(mesh_.surface(i)).frame.n, b, scene_.surface(mesh_.surface(j)).frame.n);
+        const double unoccluded = exchange.add(a, scene_.surface(mesh_.surface(i)).frame.n, b,
+                                               scene_.surface(mesh_.surface(j)).frame.n);
         if (!(unoccluded > 0)) return 0;
         const double tolerance = options_.tolerance > 0 ? options_.tolerance : default_tolerance;
         OccludedOptions until;
