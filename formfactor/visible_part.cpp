@@ -1,0 +1,126 @@
+#include "formfactor/visible_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace patchlight {
+
+namespace {
+
+/// Heights below this part of a corner's distance are rounding of cross products.
+constexpr double rounding = 4e-15;
+
+/// −2π times the part of Lambert's formula that the piece makes; its corners are relative to the point.
+double contour(const Polygon& piece, const Vec3& n)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+        const Vec3 &a = piece[i], &b = piece[i + 1 < piece.size() ? i + 1 : 0];
+        const Vec3 c = glm::cross(a, b);
+        const double length = std::sqrt(glm::dot(c, c));
+        if (length > 0) sum += std::atan2(length, glm::dot(a, b)) * glm::dot(n, c) / length;
+    }
+    return sum;
+}
+
+/// The planes of a blocker's cone from x, their normals inwards; edges seen end on have none. Unit normals.
+void cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::vector<Vec3>& planes)
+{
+    planes.clear();
+    const std::size_t count = blocker.corners.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3 a = blocker.corners[k] - x, b = blocker.corners[k + 1 < count ? k + 1 : 0] - x;
+        // Seen from its front a blocker runs counter-clockwise.
+        const Vec3 m = height > 0 ? glm::cross(b, a) : glm::cross(a, b);
+        const double length = std::sqrt(glm::dot(m, m));
+        if (length > 1e-15 * std::sqrt(glm::dot(a, a) * glm::dot(b, b))) planes.push_back(m / length);
+    }
+}
+
+/// heights[k·corners + i]: of corner i over plane k; what is rounding counts as 0. False if some plane has the whole
+/// piece outside.
+bool touches_cone(const Polygon& piece, const std::vector<Vec3>& planes, std::vector<double>& heights)
+{
+    heights.resize(planes.size() * piece.size());
+    double* h = heights.data();
+    for (const Vec3& m : planes) {
+        double most = 0;
+        for (const Vec3& p : piece) {
+            *h = glm::dot(m, p);
+            if (std::abs(*h) <= rounding * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z))) *h = 0;
+            most = std::max(most, *h++);
+        }
+        if (most <= 0) return false;
+    }
+    return true;
+}
+
+/// Cuts the piece at one plane: what is inside stays, what is outside goes to `visible`.
+void split(Polygon& piece, const Vec3& m, std::vector<Polygon>& visible)
+{
+    Polygon inside, outside;
+    const auto height_of = [&](const Vec3& p) {
+        const double h = glm::dot(m, p);
+        return std::abs(h) <= rounding * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) ? 0.0 : h;
+    };
+    Vec3 last = piece.back();
+    double last_height = height_of(last);
+    for (const Vec3& p : piece) {
+        const double h = height_of(p);
+        if ((h > 0 && last_height < 0) || (h < 0 && last_height > 0)) {
+            const Vec3 crossing = last + (last_height / (last_height - h)) * (p - last);
+            inside.push_back(crossing);
+            outside.push_back(crossing);
+        }
+        if (h >= 0) inside.push_back(p);
+        if (h <= 0) outside.push_back(p);
+        last = p;
+        last_height = h;
+    }
+    if (outside.size() >= 3) visible.push_back(std::move(outside));
+    piece = std::move(inside);
+}
+
+/// What of the pieces is outside the cone, into `next`.
+void take_away(VisibleScratch& scratch)
+{
+    scratch.next.clear();
+    for (Polygon& piece : scratch.pieces) {
+        if (!touches_cone(piece, scratch.planes, scratch.heights)) {
+            scratch.next.push_back(std::move(piece));
+            continue;
+        }
+        const std::size_t corners = piece.size();
+        for (std::size_t k = 0; k < scratch.planes.size() && piece.size() >= 3; ++k) {
+            const double* h = scratch.heights.data() + k * corners;
+            if (std::all_of(h, h + corners, [](double x) { return x >= 0; })) continue;
+            split(piece, scratch.planes[k], scratch.next);
+        }
+    }
+    std::swap(scratch.pieces, scratch.next);
+}
+
+}  // namespace
+
+double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygon,
+                      std::span<const BlockerView> blockers, VisibleScratch& scratch)
+{
+    scratch.pieces.resize(1);
+    Polygon& whole = scratch.pieces.front();
+    whole.clear();
+    for (const Vec3& p : polygon) whole.push_back(p - x);
+    for (const BlockerView& blocker : blockers) {
+        const double height = glm::dot(blocker.normal, x) - blocker.offset;
+        if (height == 0) continue;
+        cone_planes(x, blocker, height, scratch.planes);
+        take_away(scratch);
+        if (scratch.pieces.empty()) return 0;
+    }
+    double sum = 0;
+    for (const Polygon& piece : scratch.pieces) sum += contour(piece, n);
+    return std::max(0.0, -sum / (2 * std::numbers::pi));
+}
+
+}  // namespace patchlight
