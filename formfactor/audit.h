@@ -55,21 +55,22 @@ void sort_columns(FormFactorMatrix& matrix);
 struct RepairReport {
     ClosureDefect closure_before, closure_after;
     ReciprocityDefect reciprocity_before, reciprocity_after;
-    std::size_t iterations = 0;     ///< of scaling; 0 in an open scene, which isn't scaled
+    std::size_t iterations = 0;     ///< of scaling
     bool converged = true;          ///< false: some rows could not be scaled to their sums
     std::size_t added = 0;          ///< factors that were 0 and whose opposite was not
     double largest_row_change = 0;  ///< max_i Σ_j |F'_ij − F_ij|
     double largest_scaling = 0;     ///< max |d_i d_j − 1|: the largest relative change after symmetrising
 };
 
-/// Makes a matrix reciprocal, and in a closed scene closed, without breaking either for the other:
-/// G_ij = (A_i F_ij + A_j F_ji)/2, then G'_ij = d_i G_ij d_j with d > 0 such that Σ_j G'_ij = A_i (1 − backs_i), by
-/// the symmetric iteration d_i ← d_i √(target_i / Σ_j d_i G_ij d_j) [KnightRuizUcar14], until every row is within
-/// 1e-12 of its sum or 1,000 times; F'_ij = G'_ij / A_i. Factors stay ≥ 0, and what is 0 both ways stays 0. Rows are
-/// ascending afterwards. A closed matrix has its `escaped` set to 0; in an open one it is 1 − Σ F − backs, not below 0.
-/// It removes no error of single factors: it only spreads them so that no power is made or lost.
-/// Needs as much memory again as the matrix, twice. Throws std::invalid_argument as audit() does, and for factors that
-/// are negative or not finite.
+/// Makes a matrix reciprocal and its rows sum to 1, without breaking either for the other:
+/// G_ij = (A_i F_ij + A_j F_ji)/2, then G'_ij = d_i G_ij d_j with d > 0 such that
+/// Σ_j G'_ij + d_i A_i escaped_i = A_i (1 − backs_i), by the symmetric iteration d_i ← d_i √(target_i / sum_i)
+/// [KnightRuizUcar14], until every row is within 1e-12 of its sum or 1,000 times; F'_ij = G'_ij / A_i. In a closed
+/// scene nothing escapes; in an open one what escapes is scaled along, and taken from the rows' sums where the method
+/// doesn't know it. Factors stay ≥ 0, and what is 0 both ways stays 0. Rows are ascending afterwards, and
+/// `matrix.escaped` is what was scaled; `matrix.backs` changes only in rows that were nothing but backs. It removes no
+/// error of single factors: it only spreads them so that no power is made or lost. Needs three times the memory of the
+/// matrix beside it. Throws std::invalid_argument as audit() does, and for factors that are negative or not finite.
 RepairReport repair_symmetrically(FormFactorMatrix& matrix, const PatchField<double>& areas, bool closed);
 
 }  // namespace patchlight

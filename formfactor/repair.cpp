@@ -11,6 +11,8 @@ namespace {
 
 constexpr double row_tolerance = 1e-12;
 constexpr std::size_t most_iterations = 1000;
+/// A row with less to share sees nothing but backs.
+constexpr double least_share = 1e-9;
 
 void require_positive(const FormFactorMatrix& matrix)
 {
@@ -83,45 +85,60 @@ FormFactorMatrix mean_with_transposed(const FormFactorMatrix& G, std::size_t& ad
     return result;
 }
 
-/// Σ_j d_i G_ij d_j of a row.
-double scaled_sum(const FormFactorMatrix& G, const std::vector<double>& d, std::size_t row)
+/// What the rows are to be scaled to.
+struct Balance {
+    std::vector<double> escaped;  ///< A_i escaped_i: scaled with the row, but nobody's column
+    std::vector<double> targets;  ///< A_i (1 − backs_i)
+};
+
+/// Σ_j d_i G_ij d_j of a row, and what escapes.
+double scaled_sum(const FormFactorMatrix& G, const Balance& balance, const std::vector<double>& d, std::size_t row)
 {
-    double sum = 0;
+    double sum = balance.escaped[row];
     for (std::size_t k = G.row_start[row]; k < G.row_start[row + 1]; ++k) sum += G.factors[k] * d[G.columns[k]];
     return sum * d[row];
 }
 
-/// d such that diag(d) G diag(d) has the row sums `targets`. Rows without entries stay as they are.
-std::vector<double> symmetric_scaling(const FormFactorMatrix& G, const std::vector<double>& targets,
-                                      RepairReport& report)
+double sum_of_row(const FormFactorMatrix& matrix, std::size_t row)
+{
+    double sum = 0;
+    for (std::size_t k = matrix.row_start[row]; k < matrix.row_start[row + 1]; ++k) sum += matrix.factors[k];
+    return sum;
+}
+
+Balance balance_of(const FormFactorMatrix& matrix, const FormFactorMatrix& G, const PatchField<double>& areas,
+                   bool closed)
+{
+    Balance balance{std::vector<double>(G.size()), std::vector<double>(G.size())};
+    for (std::size_t i = 0; i < G.size(); ++i) {
+        const PatchId patch(i);
+        const double share = 1 - (matrix.backs.empty() ? 0 : matrix.backs[patch]);
+        const double escaped = closed                   ? 0
+                               : matrix.escaped.empty() ? std::max(0.0, share - sum_of_row(matrix, i))
+                                                        : matrix.escaped[patch];
+        balance.escaped[i] = areas[patch] * escaped;
+        // A row that sees nothing but backs keeps what little it has, and its backs make room for it.
+        balance.targets[i] = share > least_share ? areas[patch] * share : balance.escaped[i] + sum_of_row(G, i);
+    }
+    return balance;
+}
+
+/// d that brings all rows to their targets. Rows without anything stay as they are.
+std::vector<double> symmetric_scaling(const FormFactorMatrix& G, const Balance& balance, RepairReport& report)
 {
     std::vector<double> d(G.size(), 1.0), sums(G.size());
     for (;;) {
         double worst = 0;
         for (std::size_t i = 0; i < G.size(); ++i) {
-            sums[i] = scaled_sum(G, d, i);
-            if (sums[i] > 0) worst = std::max(worst, std::abs(sums[i] / targets[i] - 1));
+            sums[i] = scaled_sum(G, balance, d, i);
+            if (sums[i] > 0) worst = std::max(worst, std::abs(sums[i] / balance.targets[i] - 1));
         }
         report.converged = worst <= row_tolerance;
         if (report.converged || report.iterations == most_iterations) return d;
         ++report.iterations;
         for (std::size_t i = 0; i < G.size(); ++i)
-            if (sums[i] > 0) d[i] *= std::sqrt(targets[i] / sums[i]);
+            if (sums[i] > 0) d[i] *= std::sqrt(balance.targets[i] / sums[i]);
     }
-}
-
-/// What each row's exchanges are to sum to. A row that sees nothing but backs keeps what little it has.
-std::vector<double> closed_targets(const FormFactorMatrix& matrix, const FormFactorMatrix& G,
-                                   const PatchField<double>& areas)
-{
-    const std::vector<double> ones(G.size(), 1.0);
-    std::vector<double> targets(G.size());
-    for (std::size_t i = 0; i < G.size(); ++i) {
-        const PatchId patch(i);
-        const double share = 1 - (matrix.backs.empty() ? 0 : matrix.backs[patch]);
-        targets[i] = share > 1e-9 ? areas[patch] * share : scaled_sum(G, ones, i);
-    }
-    return targets;
 }
 
 void scale(FormFactorMatrix& G, const std::vector<double>& d, RepairReport& report)
@@ -158,17 +175,6 @@ double largest_row_change(const FormFactorMatrix& before, const FormFactorMatrix
     return largest;
 }
 
-void settle_escaped(FormFactorMatrix& matrix, bool closed)
-{
-    matrix.escaped = PatchField<double>(matrix.size());
-    if (closed) return;
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
-        double rest = 1 - (matrix.backs.empty() ? 0 : matrix.backs[PatchId(i)]);
-        for (std::size_t k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) rest -= matrix.factors[k];
-        matrix.escaped[PatchId(i)] = std::max(0.0, rest);
-    }
-}
-
 }  // namespace
 
 RepairReport repair_symmetrically(FormFactorMatrix& matrix, const PatchField<double>& areas, bool closed)
@@ -180,13 +186,21 @@ RepairReport repair_symmetrically(FormFactorMatrix& matrix, const PatchField<dou
     report.closure_before = before.closure;
     report.reciprocity_before = before.reciprocity;
     FormFactorMatrix G = mean_with_transposed(exchanges(matrix, areas), report.added);
-    if (closed) scale(G, symmetric_scaling(G, closed_targets(matrix, G, areas), report), report);
+    const Balance balance = balance_of(matrix, G, areas, closed);
+    const std::vector<double> d = symmetric_scaling(G, balance, report);
+    scale(G, d, report);
     divide_by_areas(G, areas);
     report.largest_row_change = largest_row_change(matrix, G);
     matrix.row_start = std::move(G.row_start);
     matrix.columns = std::move(G.columns);
     matrix.factors = std::move(G.factors);
-    settle_escaped(matrix, closed);
+    matrix.escaped = PatchField<double>(matrix.size());
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        const PatchId patch(i);
+        matrix.escaped[patch] = d[i] * balance.escaped[i] / areas[patch];
+        if (!matrix.backs.empty() && !(1 - matrix.backs[patch] > least_share))
+            matrix.backs[patch] = std::max(0.0, 1 - sum_of_row(matrix, i) - matrix.escaped[patch]);
+    }
     const FormFactorAudit after = audit(matrix, areas, closed);
     report.closure_after = after.closure;
     report.reciprocity_after = after.reciprocity;

@@ -236,16 +236,31 @@ TEST(Repair, BacksStayOutOfTheRowsSum)
     EXPECT_NEAR(sum, 0.75, 1e-11);
 }
 
-TEST(Repair, AnOpenSceneIsOnlyMadeReciprocal)
+TEST(Repair, InAnOpenSceneWhatEscapesIsScaledAlong)
 {
-    Noisy noisy;
-    const double forth = entry(noisy.matrix, 3, 5), back = entry(noisy.matrix, 5, 3);
-    const double A3 = noisy.areas[PatchId(3UL)], A5 = noisy.areas[PatchId(5UL)];
-    const RepairReport report = repair_symmetrically(noisy.matrix, noisy.areas, false);
-    EXPECT_EQ(report.iterations, 0U);
-    EXPECT_EQ(report.largest_scaling, 0);
-    EXPECT_NEAR(entry(noisy.matrix, 3, 5), (A3 * forth + A5 * back) / (2 * A3), 1e-15);
-    EXPECT_LT(audit(noisy.matrix, noisy.areas, false).reciprocity.worst, 1e-15);
+    for (const bool known : {true, false}) {
+        Noisy noisy;
+        if (known) {
+            noisy.matrix.escaped = PatchField<double>(40);
+            for (std::size_t i = 0; i < 40; ++i) noisy.matrix.escaped[PatchId(i)] = i % 2 == 0 ? 0.3 : 0.05;
+        }
+        const RepairReport report = repair_symmetrically(noisy.matrix, noisy.areas, false);
+        EXPECT_TRUE(report.converged);
+        const FormFactorAudit after = audit(noisy.matrix, noisy.areas, false);
+        EXPECT_LT(after.reciprocity.worst, 1e-15);
+        EXPECT_LT(after.closure.worst, 1e-11);
+        for (const double escaped : noisy.matrix.escaped.values()) EXPECT_TRUE(escaped >= 0 && escaped < 1);
+    }
+}
+
+TEST(Repair, AReciprocalMatrixOfAnOpenSceneStaysWhatItIs)
+{
+    const double there = 0.19982489569838738304;
+    FormFactorMatrix matrix = matrix_of({{{1, there}}, {{0, there}}});
+    const RepairReport report = repair_symmetrically(matrix, PatchField<double>(2, 1.0), false);
+    EXPECT_NEAR(matrix.factors[0], there, 1e-15);
+    EXPECT_NEAR(matrix.escaped[PatchId(0UL)], 1 - there, 1e-15);
+    EXPECT_LE(report.iterations, 1U);
 }
 
 TEST(Repair, WhatCannotBeScaledIsSaid)
