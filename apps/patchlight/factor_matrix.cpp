@@ -67,6 +67,17 @@ FormFactorMatrix computed(const Scene& scene, const PatchMesh& mesh, const FormF
     }
 }
 
+/// Before hours of work, not after.
+void make_folders(const FormFactorsCommand& command)
+{
+    for (const std::string& file : {command.output, command.patches}) {
+        const auto folder = std::filesystem::path(file).parent_path();
+        if (!folder.empty()) {
+            FileWriter::make_folder(folder);
+        }
+    }
+}
+
 MatrixResult make_matrix(const FormFactorsCommand& command, const SceneInput& input, Session& session)
 {
     const Scene& scene = input.scene;
@@ -75,6 +86,7 @@ MatrixResult make_matrix(const FormFactorsCommand& command, const SceneInput& in
     result.mesh = triangulate(scene, command.meshing);
     session.interruption.check();
     result.bytes = checked_bytes(static_cast<double>(result.mesh.patch_count()), command);
+    make_folders(command);
     const auto begin = std::chrono::steady_clock::now();
     result.matrix = computed(scene, result.mesh, command, session);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -112,12 +124,6 @@ void say_what_is_wrong(const MatrixResult& result, const FormFactorsCommand& com
 void write_files(const MatrixResult& result, const FormFactorsCommand& command, const Scene& scene, Session& session)
 {
     const Checkpoint check = [&] { session.interruption.check(); };
-    for (const std::string& file : {command.output, command.patches}) {
-        const auto folder = std::filesystem::path(file).parent_path();
-        if (!folder.empty()) {
-            FileWriter::make_folder(folder);
-        }
-    }
     if (command.output.ends_with(".csv")) {
         write_factors_csv(command.output, result.matrix, session.writer, check);
     } else if (!command.output.empty()) {
