@@ -129,9 +129,10 @@ Visibility Blockers::between(std::span<const Vec3> a, const Vec3& normal_a, std:
     for (const Entry& entry : near) {
         const Blocker& blocker = blockers_[entry.second];
         if (!clipped(blocker, normal_a, offset_a, normal_b, offset_b, snap_, rest)) continue;
-        if (is_clear(shaft, rest.view(), snap_)) continue;
+        const Visibility past = visibility_past(shaft, rest.view(), snap_);
+        if (past == Visibility::visible) continue;
         found.push_back(rest);
-        if (is_covered(shaft, rest.view())) return Visibility::hidden;
+        if (past == Visibility::hidden) return past;
     }
     return found.empty() ? Visibility::visible : Visibility::partial;
 }
@@ -140,10 +141,10 @@ Visibility sift(const Shaft& shaft, std::span<const Blocker> candidates, double 
 {
     found.clear();
     for (std::uint32_t k = 0; k < candidates.size(); ++k) {
-        const BlockerView blocker = candidates[k].view();
-        if (is_clear(shaft, blocker, snap)) continue;
+        const Visibility past = visibility_past(shaft, candidates[k].view(), snap);
+        if (past == Visibility::visible) continue;
         found.push_back(k);
-        if (is_covered(shaft, blocker)) return Visibility::hidden;
+        if (past == Visibility::hidden) return past;
     }
     return found.empty() ? Visibility::visible : Visibility::partial;
 }

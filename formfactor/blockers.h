@@ -19,13 +19,6 @@ struct Blocker {
     BlockerView view() const { return {corners, normal, offset}; }
 };
 
-/// What lies between two convex polygons of different planes.
-enum class Visibility {
-    visible,  ///< nothing stands in between
-    hidden,   ///< no segment between them is free, or one is behind the other's plane
-    partial   ///< cannot tell more
-};
-
 /// The scene's surfaces as blockers, found by the volume of the shaft between two polygons, never by sample rays:
 /// conservative, none is missed. All queries may be made from many threads at once.
 class Blockers {

@@ -29,4 +29,8 @@ std::vector<HemisphereSet> hemisphere_sets(const FormFactorOptions& options, int
 /// Throws std::invalid_argument unless k ≥ 8 is a multiple of 4.
 HemisphereSet regular_grid(int k, bool exact_rings);
 
+/// Turns the set's directions by `turn` radians about the frame's normal and writes them as rays without an end; the
+/// origins are the caller's to set.
+void aim(const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays);
+
 }  // namespace patchlight

@@ -20,6 +20,9 @@ constexpr std::size_t most_first_cells = 20000;
 /// What part of a cell's unoccluded light may be missed where an event crosses it unnoticed.
 constexpr double event_risk = 0.05;
 
+/// Area over the square of the length below which a cell is a sliver.
+constexpr double sliver = 1e-7;
+
 struct Cell {
     std::vector<Vec2> corners;
     std::vector<std::uint32_t> blockers, events;
@@ -116,14 +119,28 @@ private:
         Polygon corners;
         for (const Vec2& q : cell.corners) corners.push_back(plane_.lift(q));
         const Shaft shaft{corners, target_};
-        std::erase_if(cell.blockers, [&](std::uint32_t k) { return is_clear(shaft, blockers_[k].view(), snap_); });
-        if (cell.blockers.empty()) {
-            settled_ += polygon_exchange(corners, target_, 1e-13);
-            ++nodes_;
-            return true;
-        }
-        return std::ranges::any_of(cell.blockers,
-                                   [&](std::uint32_t k) { return is_covered(shaft, blockers_[k].view()); });
+        bool covered = false;
+        std::erase_if(cell.blockers, [&](std::uint32_t k) {
+            const Visibility past = visibility_past(shaft, blockers_[k].view(), snap_);
+            covered = covered || past == Visibility::hidden;
+            return past == Visibility::visible;
+        });
+        if (covered) return true;
+        if (!cell.blockers.empty()) return false;
+        settled_ += free_exchange(cell, corners);
+        return true;
+    }
+
+    /// Contours cancel around a sliver: its light is taken at nodes, which its small area makes exact enough.
+    double free_exchange(const Cell& cell, const Polygon& corners)
+    {
+        double square = 0;
+        for (const Vec3& p : corners)
+            for (const Vec3& q : corners) square = std::max(square, glm::dot(q - p, q - p));
+        ++nodes_;
+        if (cell.area > sliver * square) return polygon_exchange(corners, target_, 1e-13);
+        views_.clear();
+        return rule(cell, triangle_rule(8));
     }
 
     bool crosses(const ShadowEvent& event, const Cell& cell) const
@@ -267,15 +284,20 @@ bool precedes(std::span<const Vec3> a, std::span<const Vec3> b)
     });
 }
 
+/// One answer for both ways round.
+bool second_is_farther(std::span<const Vec3> first, std::span<const Vec3> second, std::span<const Blocker> blockers)
+{
+    const double room_first = clearance(first, blockers), room_second = clearance(second, blockers);
+    return room_first != room_second ? room_first < room_second : precedes(second, first);
+}
+
 }  // namespace
 
 ExchangeEstimate occluded_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
                                    const Vec3& normal_second, std::span<const Blocker> blockers, double snap,
                                    const OccludedOptions& options)
 {
-    const double room_first = clearance(first, blockers), room_second = clearance(second, blockers);
-    const bool swapped = room_first != room_second ? room_first < room_second : precedes(second, first);
-    if (swapped)
+    if (options.outer == OuterPolygon::farther && second_is_farther(first, second, blockers))
         return OccludedIntegral(second, normal_second, first, normal_first, blockers, snap, options).run();
     return OccludedIntegral(first, normal_first, second, normal_second, blockers, snap, options).run();
 }

@@ -14,7 +14,14 @@ struct ExchangeEstimate {
     std::size_t nodes = 0;
 };
 
+/// Which polygon is integrated over.
+enum class OuterPolygon {
+    farther,  ///< from the blockers: the light varies less there
+    first     ///< the first: right where blockers stand on it, since cutting along their feet leaves free cells
+};
+
 struct OccludedOptions {
+    OuterPolygon outer = OuterPolygon::farther;
     double tolerance = 1e-10;         ///< absolute error asked for, of A_1 F_12
     std::size_t max_nodes = 1 << 21;  ///< then the best so far is returned, with its larger error
 };
@@ -26,7 +33,7 @@ struct OccludedOptions {
 /// bisection, worst cell first. A cell that events still cross counts with an error however smooth it looks: a sliver
 /// can't be lost, only found to the tolerance.
 /// Both polygons must be in front of each other's plane (keep_front), the blockers in front of both
-/// (Blockers::between). Swapping the polygons gives the same bits.
+/// (Blockers::between). Swapping the polygons gives the same bits with OuterPolygon::farther.
 ExchangeEstimate occluded_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
                                    const Vec3& normal_second, std::span<const Blocker> blockers, double snap,
                                    const OccludedOptions& options = {});

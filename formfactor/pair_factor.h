@@ -13,9 +13,9 @@ namespace patchlight {
 /// How one pair is computed. Defaults stay below a second for two polygons on one thread.
 struct PairOptions {
     FormFactorMethod method = FormFactorMethod::exact;
-    int origins = 256;          ///< hemicube: hemicubes over `from`, 1 … 65536
+    int origins = 4096;         ///< hemicube: hemicubes over `from`, 1 … 65536
     int resolution = 128;       ///< hemicube: pixels along an edge, even, 4 … 4096
-    std::size_t rays = 1 << 21; ///< hemisphere: in all, over all origins, 16 … 2^40
+    std::size_t rays = 1 << 22; ///< hemisphere: in all, over all origins, 16 … 2^40
     double tolerance = 0;       ///< of F; 0 = the method's own: exact and closed-form 1e-10, quadrature 1e-4
     double relative_error = 0.005;  ///< monte-carlo: goes on until its standard error is below this part of F
     std::uint64_t seed = 1;

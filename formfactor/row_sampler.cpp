@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -22,23 +21,6 @@ RowSampler::RowSampler(const Scene& scene, const RayCaster& caster, const PatchM
       sets_(hemisphere_sets(options, set_count))
 {
     for (const SurfaceId s : sources) sources_.emplace_back(scene, s);
-}
-
-/// Turns the set's directions about the frame's normal and writes them as rays; the origins come after.
-void RowSampler::aim(const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays) const
-{
-    const Vec3 u = std::cos(turn) * frame.u + std::sin(turn) * frame.v, v = glm::cross(frame.n, u);
-    const auto f = [](double x) { return static_cast<float>(x); };
-    const float ux = f(u.x), uy = f(u.y), uz = f(u.z), vx = f(v.x), vy = f(v.y), vz = f(v.z);
-    const float nx = f(frame.n.x), ny = f(frame.n.y), nz = f(frame.n.z);
-    rays.resize(set.size());
-    for (std::size_t i = 0; i < set.size(); ++i) {
-        const float x = set.x[i], y = set.y[i], z = set.z[i];
-        rays.dx[i] = x * ux + y * vx + z * nx;
-        rays.dy[i] = x * uy + y * vy + z * ny;
-        rays.dz[i] = x * uz + y * vz + z * nz;
-        rays.reach[i] = std::numeric_limits<float>::infinity();
-    }
 }
 
 void RowSampler::patch_row(PatchId patch, RowScratch& scratch) const

@@ -49,7 +49,6 @@ public:
     const std::vector<Source>& sources() const { return sources_; }
 
 private:
-    void aim(const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays) const;
     void accumulate(const HemisphereSet& set, RowScratch& scratch) const;
     void swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch& scratch) const;
     void collect(RowScratch& scratch) const;

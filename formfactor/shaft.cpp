@@ -1,6 +1,7 @@
 #include "formfactor/shaft.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace patchlight {
@@ -20,15 +21,6 @@ struct Extent {
         }
     }
 };
-
-/// Whether the plane of the blocker leaves both ends on one side.
-bool beside_plane(const Shaft& shaft, const BlockerView& blocker, double snap)
-{
-    Extent ends;
-    ends.add(shaft.a, blocker.normal);
-    ends.add(shaft.b, blocker.normal);
-    return ends.least >= blocker.offset - snap || ends.most <= blocker.offset + snap;
-}
 
 Vec3 mean(std::span<const Vec3> points)
 {
@@ -96,34 +88,43 @@ bool beyond_side(std::span<const Vec3> edges, std::span<const Vec3> corners, con
     return false;
 }
 
-}  // namespace
-
-bool is_clear(const Shaft& shaft, const BlockerView& blocker, double snap)
+/// For a blocker whose plane parts `from` (in its front) from `to`: by the sides of its edges.
+Visibility past_edges(std::span<const Vec3> from, std::span<const Vec3> to, const BlockerView& blocker, double snap)
 {
-    return beside_plane(shaft, blocker, snap) || direction_found(shaft, blocker, snap) ||
-           beyond_side(shaft.a, shaft.b, blocker, snap) || beyond_side(shaft.b, shaft.a, blocker, snap);
+    // Seen from the front the corners run counter-clockwise; the volume is positive where a line passes outside.
+    const std::size_t n = blocker.corners.size();
+    bool covered = true;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Vec3 &e0 = blocker.corners[k], &e1 = blocker.corners[k + 1 < n ? k + 1 : 0];
+        bool outside = true;
+        for (const Vec3& x : from) {
+            const Vec3 normal = glm::cross(e0 - x, e1 - x);
+            const double slack = snap * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+            for (const Vec3& y : to) {
+                const double volume = glm::dot(normal, y - x);
+                outside = outside && volume >= -slack;
+                covered = covered && volume <= 0;
+            }
+        }
+        if (outside) return Visibility::visible;
+    }
+    return covered ? Visibility::hidden : Visibility::partial;
 }
 
-bool is_covered(const Shaft& shaft, const BlockerView& blocker)
+}  // namespace
+
+Visibility visibility_past(const Shaft& shaft, const BlockerView& blocker, double snap)
 {
     Extent a, b;
     a.add(shaft.a, blocker.normal);
     b.add(shaft.b, blocker.normal);
-    const bool a_in_front = a.least >= blocker.offset && b.most <= blocker.offset;
-    const bool b_in_front = b.least >= blocker.offset && a.most <= blocker.offset;
-    if (!a_in_front && !b_in_front) return false;
-    // Seen from the front the corners run counter-clockwise.
-    const std::span<const Vec3> from = a_in_front ? shaft.a : shaft.b, to = a_in_front ? shaft.b : shaft.a;
-    const std::size_t n = blocker.corners.size();
-    for (std::size_t k = 0; k < n; ++k) {
-        const Vec3 &e0 = blocker.corners[k], &e1 = blocker.corners[(k + 1) % n];
-        for (const Vec3& x : from) {
-            const Vec3 normal = glm::cross(e0 - x, e1 - x);
-            for (const Vec3& y : to)
-                if (glm::dot(normal, y - x) > 0) return false;
-        }
-    }
-    return true;
+    if (std::min(a.least, b.least) >= blocker.offset - snap || std::max(a.most, b.most) <= blocker.offset + snap)
+        return Visibility::visible;
+    if (a.least >= blocker.offset && b.most <= blocker.offset) return past_edges(shaft.a, shaft.b, blocker, snap);
+    if (b.least >= blocker.offset && a.most <= blocker.offset) return past_edges(shaft.b, shaft.a, blocker, snap);
+    const bool apart = direction_found(shaft, blocker, snap) || beyond_side(shaft.a, shaft.b, blocker, snap) ||
+                       beyond_side(shaft.b, shaft.a, blocker, snap);
+    return apart ? Visibility::visible : Visibility::partial;
 }
 
 }  // namespace patchlight

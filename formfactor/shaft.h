@@ -18,13 +18,18 @@ struct BlockerView {
     double offset = 0;
 };
 
-/// Whether a separating plane was found between a shaft and a blocker, that may touch by `snap` (m): no segment of the
-/// shaft crosses more than the blocker's rim. Conservative: where it says false they may still be apart.
-/// Tries the blocker's own plane, a few steps of a separating direction [ChungWang96], then the shaft's side planes.
-bool is_clear(const Shaft& shaft, const BlockerView& blocker, double snap);
+/// What lies between two convex polygons of different planes.
+enum class Visibility {
+    visible,  ///< nothing stands in between
+    hidden,   ///< no segment between them is free, or one is behind the other's plane
+    partial   ///< cannot tell more
+};
 
-/// Whether every segment of the shaft crosses the blocker: its plane lies between a and b, and no corner of one sees
-/// a corner of the other past an edge (the test is linear in both points, so that corners decide).
-bool is_covered(const Shaft& shaft, const BlockerView& blocker);
+/// How one blocker stands in a shaft: `visible` when it was found to cross no segment by more than `snap` (m) of its rim,
+/// `hidden` when it crosses every segment. Conservative: `partial` may still be either.
+/// First the blocker's own plane; if that parts a from b, the sides on which all lines between corners pass the blocker's
+/// edges (linear in both ends, so that corners decide); else a few steps of a separating direction [ChungWang96] and
+/// the shaft's side planes.
+Visibility visibility_past(const Shaft& shaft, const BlockerView& blocker, double snap);
 
 }  // namespace patchlight

@@ -9,8 +9,21 @@ namespace patchlight {
 
 namespace {
 
-/// Heights below this part of a corner's distance are rounding of cross products.
+/// Heights below this part of the sizes that they are products of are rounding.
 constexpr double rounding = 4e-15;
+
+/// A size that costs no root.
+double size(const Vec3& p)
+{
+    return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
+}
+
+/// Over the plane through the origin with the normal m, of any length.
+double height_over(const Vec3& m, double size_m, const Vec3& p)
+{
+    const double h = glm::dot(m, p);
+    return std::abs(h) <= rounding * size_m * size(p) ? 0.0 : h;
+}
 
 /// −2π times the part of Lambert's formula that the piece makes; its corners are relative to the point.
 double contour(const Polygon& piece, const Vec3& n)
@@ -25,7 +38,7 @@ double contour(const Polygon& piece, const Vec3& n)
     return sum;
 }
 
-/// The planes of a blocker's cone from x, their normals inwards; edges seen end on have none. Unit normals.
+/// The planes of a blocker's cone from x, their normals inwards; edges seen end on have none.
 void cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::vector<Vec3>& planes)
 {
     planes.clear();
@@ -34,8 +47,7 @@ void cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::
         const Vec3 a = blocker.corners[k] - x, b = blocker.corners[k + 1 < count ? k + 1 : 0] - x;
         // Seen from its front a blocker runs counter-clockwise.
         const Vec3 m = height > 0 ? glm::cross(b, a) : glm::cross(a, b);
-        const double length = std::sqrt(glm::dot(m, m));
-        if (length > 1e-15 * std::sqrt(glm::dot(a, a) * glm::dot(b, b))) planes.push_back(m / length);
+        if (size(m) > 1e-15 * size(a) * size(b)) planes.push_back(m);
     }
 }
 
@@ -47,9 +59,9 @@ bool touches_cone(const Polygon& piece, const std::vector<Vec3>& planes, std::ve
     double* h = heights.data();
     for (const Vec3& m : planes) {
         double most = 0;
+        const double size_m = size(m);
         for (const Vec3& p : piece) {
-            *h = glm::dot(m, p);
-            if (std::abs(*h) <= rounding * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z))) *h = 0;
+            *h = height_over(m, size_m, p);
             most = std::max(most, *h++);
         }
         if (most <= 0) return false;
@@ -61,14 +73,11 @@ bool touches_cone(const Polygon& piece, const std::vector<Vec3>& planes, std::ve
 void split(Polygon& piece, const Vec3& m, std::vector<Polygon>& visible)
 {
     Polygon inside, outside;
-    const auto height_of = [&](const Vec3& p) {
-        const double h = glm::dot(m, p);
-        return std::abs(h) <= rounding * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) ? 0.0 : h;
-    };
+    const double size_m = size(m);
     Vec3 last = piece.back();
-    double last_height = height_of(last);
+    double last_height = height_over(m, size_m, last);
     for (const Vec3& p : piece) {
-        const double h = height_of(p);
+        const double h = height_over(m, size_m, p);
         if ((h > 0 && last_height < 0) || (h < 0 && last_height > 0)) {
             const Vec3 crossing = last + (last_height / (last_height - h)) * (p - last);
             inside.push_back(crossing);
@@ -92,6 +101,7 @@ void take_away(VisibleScratch& scratch)
             scratch.next.push_back(std::move(piece));
             continue;
         }
+        scratch.cut = true;
         const std::size_t corners = piece.size();
         for (std::size_t k = 0; k < scratch.planes.size() && piece.size() >= 3; ++k) {
             const double* h = scratch.heights.data() + k * corners;
@@ -107,6 +117,7 @@ void take_away(VisibleScratch& scratch)
 double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygon,
                       std::span<const BlockerView> blockers, VisibleScratch& scratch)
 {
+    scratch.cut = false;
     scratch.pieces.resize(1);
     Polygon& whole = scratch.pieces.front();
     whole.clear();

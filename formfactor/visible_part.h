@@ -14,6 +14,7 @@ struct VisibleScratch {
     std::vector<Polygon> pieces, next;  ///< what is still visible, relative to the point
     std::vector<double> heights;        ///< of the corners of one piece over the planes through one blocker's edges
     std::vector<Vec3> planes;
+    bool cut = false;  ///< out: whether any blocker took something away
 };
 
 /// The factor of the visible part of a convex polygon from the point x with normal n: the polygon is clipped against
@@ -21,7 +22,7 @@ struct VisibleScratch {
 /// The whole polygon and all blockers must lie in front of x's horizon, and the blockers in front of the polygon's
 /// plane (see keep_front): then what a ray meets on its way to the polygon is exactly what lies in its cone.
 /// No decision needs an exact sign: a corner on a cone's plane belongs to either side with the same result.
-/// 0 when x is behind the polygon or in its plane. `blockers`: the indices of those to look at.
+/// 0 when x is behind the polygon or in its plane.
 double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygon,
                       std::span<const BlockerView> blockers, VisibleScratch& scratch);
 

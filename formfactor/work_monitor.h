@@ -34,13 +34,12 @@ struct WorkMonitor {
     std::function<void(const WorkState&)> tell;
 };
 
-/// Calls work(i, scratch) for every i in [0, n) on all threads, with one Scratch a thread, in blocks of 32.
+/// Calls work(i, scratch) for every i in [0, n) on all threads, with one Scratch a thread, in blocks.
 /// Whatever work(i) writes must depend on i alone: then the result doesn't depend on the number of threads.
 /// Returns the scratches' sum of `traced`. Throws Interrupted within a block's time of a stop request.
 template <class Scratch, class Work>
-std::size_t for_each_row(std::size_t n, const WorkMonitor& monitor, const Work& work)
+std::size_t for_each_row(std::size_t n, const WorkMonitor& monitor, const Work& work, std::size_t block = 32)
 {
-    constexpr std::size_t block = 32;
     const std::size_t blocks = (n + block - 1) / block;
     tbb::enumerable_thread_specific<Scratch> scratches;
     std::atomic<std::size_t> done{0}, rays{0};
