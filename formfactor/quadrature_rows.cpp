@@ -1,5 +1,6 @@
 #include "formfactor/quadrature_rows.h"
 
+#include "formfactor/black_backs.h"
 #include "formfactor/compressed_rows.h"
 #include "formfactor/subdivided_exchange.h"
 
@@ -14,6 +15,7 @@ namespace patchlight {
 namespace {
 
 constexpr double default_tolerance = 1e-3;
+constexpr double look_for_backs = 1e-2;  // rows that miss more may see some
 constexpr std::size_t most_nodes = 1U << 14;  // of a pair
 
 /// Exchanges of patch i with those after it.
@@ -54,6 +56,8 @@ public:
         }
         return result;
     }
+
+    const Blockers& blockers() const { return blockers_; }
 
 private:
     double pair(PatchId i, PatchId j, PairScratch& scratch) const
@@ -102,7 +106,7 @@ FormFactorMatrix mirrored(const PatchMesh& mesh, const std::vector<HalfRow>& hal
                 row.factors.push_back(half->exchanges[k] / mesh.area(PatchId(i)));
                 row.raw_sum += row.factors.back();
             }
-        (closed ? row.backs : row.escaped) = std::max(0.0, 1 - row.raw_sum);
+        if (!closed) row.escaped = std::max(0.0, 1 - row.raw_sum);
         rows.put(PatchId(i), row);
     }
     return rows.matrix(nodes);
@@ -119,7 +123,9 @@ FormFactorMatrix quadrature_rows(const Scene& scene, const RayCaster& caster, co
         for_each_row<PairScratch>(halves.size(), monitor, [&](std::size_t i, PairScratch& scratch) {
             halves[i] = pairs.row(PatchId(i), scratch);
         });
-    return mirrored(mesh, halves, scene.closed, nodes);
+    FormFactorMatrix F = mirrored(mesh, halves, scene.closed, nodes);
+    if (scene.closed) add_backs(scene, mesh, pairs.blockers(), look_for_backs, F, monitor);
+    return F;
 }
 
 }  // namespace patchlight

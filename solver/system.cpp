@@ -1,5 +1,7 @@
 #include "solver/system.h"
 
+#include "formfactor/form_factor_matrix.h"
+
 namespace patchlight {
 
 namespace {
@@ -39,9 +41,8 @@ RadiositySystem unassembled(const Scene& scene, const PatchMesh& mesh)
 RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor)
 {
     RadiositySystem system = unassembled(exchange.scene, exchange.mesh);
-    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
-                             options);
-    system.F = assemble_rows(sampler, exchange.mesh.patch_count(), monitor);
+    system.F = form_factor_matrix(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, options, monitor,
+                                  emitters(exchange.scene));
     return system;
 }
 
