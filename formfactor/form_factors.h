@@ -14,7 +14,7 @@ enum class FormFactorMethod {
     closed_form,  ///< contour integrals of polygon pairs; what stands in between is not seen
     hemicube,     ///< item buffers on half cubes over the patch
     hemisphere,   ///< rays over the hemisphere from places all over the patch
-    quadrature,   ///< Gauss rules on both patches, subdivided, a visibility ray for each pair of nodes
+    quadrature,   ///< pairs cut until visible, hidden or small; a visibility ray for each pair of nodes in those
     exact,        ///< Lambert's formula on what clipping against the blockers leaves, integrated over the patch
     monte_carlo   ///< random pairs of points and random rays, with a standard error
 };

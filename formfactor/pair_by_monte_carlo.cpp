@@ -13,8 +13,8 @@ namespace patchlight {
 
 namespace {
 
-constexpr std::size_t batch_size = 4096;                  // pairs of a ray and a pair of points
-constexpr std::size_t first_batches = 16;                 // 2^16 pairs at least: the normal law holds by then
+constexpr std::size_t batch_size = 4096;                       // pairs of a ray and a pair of points
+constexpr std::size_t first_batches = 16;                      // 2^16 pairs at least: the normal law holds by then
 constexpr std::size_t zero_batches = (1U << 22) / batch_size;  // nothing seen in so many: there is nothing
 constexpr std::size_t most_batches = (1U << 28) / batch_size;
 
@@ -96,8 +96,8 @@ void add_rays(const Sides& sides, RandomNumbers& random, BatchScratch& scratch)
         const Vec3& d = scratch.directions[i];
         const FacetPoint& start = scratch.starts[i];
         const double reach = glm::dot(frame.n, frame.origin - start.position) / glm::dot(frame.n, d);
-        scratch.values[i] += balanced_weight(reach * d, sides.from[start.facet].normal, frame.n,
-                                             sides.to_points.area());
+        scratch.values[i] +=
+            balanced_weight(reach * d, sides.from[start.facet].normal, frame.n, sides.to_points.area());
     }
 }
 
@@ -111,8 +111,7 @@ void add_point_pairs(const Sides& sides, RandomNumbers& random, BatchScratch& sc
         const double u = random.uniform(), v = random.uniform(), s = random.uniform(), t = random.uniform();
         const FacetPoint x = sides.from_points.at(u, v), y = sides.to_points.at(s, t);
         const Vec3 &n_from = sides.from[x.facet].normal, &n_to = sides.to[y.facet].normal;
-        const double weight =
-            balanced_weight(y.position - x.position, n_from, n_to, sides.to_points.area());
+        const double weight = balanced_weight(y.position - x.position, n_from, n_to, sides.to_points.area());
         if (!(weight > 0)) continue;
         // Both ends stand off their surfaces: neither hides the other, however near they are.
         const Vec3 start = sides.caster.leave(x.position, n_from), end = sides.caster.leave(y.position, n_to);

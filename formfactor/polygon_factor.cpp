@@ -47,11 +47,13 @@ double largest_coordinate(std::span<const Vec3> polygon, const Vec3& origin)
 
 void require_convex(const Points& polygon, const Vec3& normal, const char* which)
 {
-    const double slack = shape_tolerance * largest_coordinate(polygon, polygon[0]);
+    const double size = largest_coordinate(polygon, polygon[0]), slack = shape_tolerance * size;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         if (std::abs(glm::dot(polygon[i] - polygon[0], normal)) > slack) refuse(which, "is not planar");
         const Vec3 along = polygon[(i + 1) % polygon.size()] - polygon[i];
         const double length = glm::length(along);
+        // The direction of an edge that clipping left tiny is rounding; its neighbours tell.
+        if (length < 1e-3 * slack) continue;
         const Vec3 inward = glm::cross(normal, along);
         for (const Vec3& p : polygon)
             if (glm::dot(p - polygon[i], inward) < -slack * length) refuse(which, "is not convex");

@@ -16,8 +16,8 @@ namespace patchlight {
 
 namespace {
 
-constexpr std::size_t nodes = 16;        // of a pair of polygons
-constexpr std::size_t most_cuts = 64;    // at once: enough work for all threads
+constexpr std::size_t nodes = 16;         // of a pair of polygons
+constexpr std::size_t most_cuts = 64;     // at once: enough work for all threads
 constexpr double exact_tolerance = 1e-9;  // of an unoccluded exchange, relative to its smaller polygon
 
 /// The vector from the corner to the corner farthest apart.
@@ -73,8 +73,7 @@ std::array<std::uint8_t, nodes> shuffled(RandomNumbers& random)
 {
     std::array<std::uint8_t, nodes> order{};
     for (std::size_t k = 0; k < nodes; ++k) order[k] = static_cast<std::uint8_t>(k);
-    for (std::size_t k = nodes; k > 1; --k)
-        std::swap(order[k - 1], order[random.below(static_cast<std::uint32_t>(k))]);
+    for (std::size_t k = nodes; k > 1; --k) std::swap(order[k - 1], order[random.below(static_cast<std::uint32_t>(k))]);
     return order;
 }
 

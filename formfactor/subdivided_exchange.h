@@ -55,8 +55,8 @@ private:
     std::vector<Cell> cells_;  ///< a heap by error, once refined
     std::vector<Blocker> found_;
     std::uint64_t seed_ = 0, key_ = 0;
-    double visible_ = 0;       ///< exchange that is done with
-    std::size_t exact_ = 0;    ///< pairs that needed no rays
+    double visible_ = 0;     ///< exchange that is done with
+    std::size_t exact_ = 0;  ///< pairs that needed no rays
 };
 
 }  // namespace patchlight

@@ -74,14 +74,20 @@ inline Corners wall_of(double l, double height, double degrees)
 
 inline KnownPair opposed(double x, double y, double d, double factor)
 {
-    return {"opposed " + std::to_string(x) + " by " + std::to_string(y) + " at " + std::to_string(d), floor_of(x, y),
-            ceiling_of(x, y, d), {}, factor};
+    return {"opposed " + std::to_string(x) + " by " + std::to_string(y) + " at " + std::to_string(d),
+            floor_of(x, y),
+            ceiling_of(x, y, d),
+            {},
+            factor};
 }
 
 inline KnownPair hinged(double w, double h, double degrees, double factor)
 {
     return {"hinged " + std::to_string(w) + " to " + std::to_string(h) + " at " + std::to_string(degrees),
-            floor_of(w, 1), wall_of(1, h, degrees), {}, factor};
+            floor_of(w, 1),
+            wall_of(1, h, degrees),
+            {},
+            factor};
 }
 
 /// Facing each other, no further than twice their size.
@@ -100,9 +106,9 @@ inline KnownPair far_pair()
 /// With an edge in common.
 inline std::vector<KnownPair> hinged_pairs()
 {
-    return {hinged(1, 1, 90, 0.20004377607540315424), hinged(1, 1, 45, 0.48334769547888),
-            hinged(1, 1, 60, 0.37090532115005),       hinged(1, 1, 135, 0.048309447801818),
-            hinged(1, 2, 90, 0.23285260279536188805), hinged(2, 1, 90, 0.11642630139768094403),
+    return {hinged(1, 1, 90, 0.20004377607540315424),  hinged(1, 1, 45, 0.48334769547888),
+            hinged(1, 1, 60, 0.37090532115005),        hinged(1, 1, 135, 0.048309447801818),
+            hinged(1, 2, 90, 0.23285260279536188805),  hinged(2, 1, 90, 0.11642630139768094403),
             hinged(1, 0.5, 90, 0.14618667910571331616)};
 }
 
@@ -111,8 +117,8 @@ inline std::vector<KnownPair> blocked_pairs()
 {
     const auto blocked = [](const std::string& name, double x0, double x1, double y0, double y1, double z,
                             double factor) {
-        return KnownPair{name, floor_of(1, 1), ceiling_of(1, 1, 1),
-                         {{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}}, factor};
+        return KnownPair{
+            name, floor_of(1, 1), ceiling_of(1, 1, 1), {{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}}, factor};
     };
     return {blocked("a quarter at the middle", 0, 0.5, 0, 0.5, 0.5, 0.149868671773790537),
             blocked("a square in the middle, near", 0.25, 0.75, 0.25, 0.75, 0.25, 0.115620602132415),
