@@ -146,7 +146,7 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
         for (const PlaneTriangle& t : arrangement.triangles) {
             if (t.front != PlaneTriangle::black && t.back != PlaneTriangle::black) ++report.opposed_pairs;
         }
-        append(join_surfaces(group, arrangement, soup), scene);
+        append(join_surfaces(group, arrangement, soup, options.join_objects), scene);
     }
     scene.center = soup.center;
     scene.diameter = soup.diameter;

@@ -61,13 +61,15 @@ void for_each_edge(const std::vector<HalfEdge>& edges, Visit visit)
 /// Joins one side of an arrangement.
 class SideJoiner {
 public:
-    SideJoiner(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup, Side side)
-        : group_(group), arrangement_(arrangement), soup_(soup), side_(side)
+    SideJoiner(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup, Side side,
+               bool join_objects)
+        : group_(group), arrangement_(arrangement), soup_(soup), side_(side), join_objects_(join_objects)
     {}
     void join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result);
 
 private:
     MaterialId material(std::uint32_t triangle) const;
+    bool belong_together(std::uint32_t triangle, std::uint32_t other) const;
     Surface make_surface(const std::vector<std::uint32_t>& triangles,
                          std::vector<std::pair<std::uint32_t, std::uint32_t>> border) const;
 
@@ -75,12 +77,22 @@ private:
     const PlaneArrangement& arrangement_;
     const PolygonSoup& soup_;
     Side side_;
+    bool join_objects_;
 };
 
 MaterialId SideJoiner::material(std::uint32_t triangle) const
 {
     const std::uint32_t face = shown(arrangement_.triangles[triangle], side_);
     return face == black ? MaterialId{} : soup_.faces[face].material;
+}
+
+bool SideJoiner::belong_together(std::uint32_t triangle, std::uint32_t other) const
+{
+    const std::uint32_t face = shown(arrangement_.triangles[triangle], side_);
+    const std::uint32_t next = shown(arrangement_.triangles[other], side_);
+    if (face == black || next == black) return false;
+    const SoupFace &a = soup_.faces[face], &b = soup_.faces[next];
+    return a.material == b.material && (join_objects_ || a.object == b.object);
 }
 
 Surface SideJoiner::make_surface(const std::vector<std::uint32_t>& triangles,
@@ -111,9 +123,7 @@ void SideJoiner::join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result)
     const auto count = static_cast<std::uint32_t>(arrangement_.triangles.size());
     UnionFind components(count);
     for_each_edge(edges, [&](const HalfEdge& h, const HalfEdge* other) {
-        if (other && material(h.triangle).valid() && material(h.triangle) == material(other->triangle)) {
-            components.join(h.triangle, other->triangle);
-        }
+        if (other && belong_together(h.triangle, other->triangle)) components.join(h.triangle, other->triangle);
     });
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;
     for (std::uint32_t t = 0; t < count; ++t) {
@@ -137,7 +147,8 @@ void SideJoiner::join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result)
 
 }  // namespace
 
-PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup)
+PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup,
+                            bool join_objects)
 {
     PlaneSurfaces result;
     for (const PlaneTriangle& triangle : arrangement.triangles) {
@@ -146,7 +157,8 @@ PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arr
         result.triangles.push_back(ours);
     }
     const std::vector<HalfEdge> edges = half_edges(arrangement);
-    for (const Side side : {Side::front, Side::back}) SideJoiner(group, arrangement, soup, side).join(edges, result);
+    for (const Side side : {Side::front, Side::back})
+        SideJoiner(group, arrangement, soup, side, join_objects).join(edges, result);
     return result;
 }
 

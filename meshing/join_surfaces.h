@@ -10,12 +10,14 @@
 
 namespace patchlight {
 
-/// The surfaces of one plane: triangles of equal material on one side that hang together by edges.
+/// The surfaces of one plane: triangles of equal material (and object, when objects don't join) on one side that hang
+/// together by edges.
 struct PlaneSurfaces {
     std::vector<Surface> surfaces;         ///< loops index the soup's vertices
     std::vector<SceneTriangle> triangles;  ///< of the arrangement; front and back index `surfaces`
 };
 
-PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup);
+PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup,
+                            bool join_objects);
 
 }  // namespace patchlight

@@ -129,6 +129,20 @@ void name_faces(const RawScene& raw, PolygonSoup& soup, std::vector<SoupFace>& f
     }
 }
 
+/// Objects that had faces in the file and have none left.
+std::vector<std::string> empty_objects(const RawScene& raw, const std::vector<SoupFace>& faces)
+{
+    std::vector<std::string> names;
+    std::vector<bool> used(raw.objects.size(), false);
+    for (const SoupFace& face : faces) used[face.object.value] = true;
+    for (const RawFace& face : raw.faces) {
+        if (!used[face.object.value]) names.push_back(raw.objects[face.object.value]);
+        used[face.object.value] = true;
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
 void add_face(const SoupFace& face, PolygonSoup& soup, std::vector<SoupFace>& faces, SceneReport& report)
 {
     const FaceShape shape = shape_of(face.loop, soup.vertices);
@@ -199,6 +213,7 @@ PolygonSoup make_polygon_soup(const RawScene& raw, const SceneOptions& options, 
         add_face(face, soup, faces, report);
     }
     if (faces.empty()) no_area();
+    report.empty_objects = empty_objects(raw, faces);
     name_faces(raw, soup, faces);
     drop_duplicates(faces, report);
     soup.faces = std::move(faces);

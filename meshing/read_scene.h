@@ -19,6 +19,7 @@ struct SceneOptions {
     std::vector<std::string> two_sided;   ///< materials with two sides
     std::map<std::string, Rgb> emitters;  ///< exitance (W/m²) given to materials by name, in place of the file's
     bool require_emitter = true;          ///< a scene without light is an error
+    bool join_objects = true;             ///< coplanar faces of one material join across objects, too
 };
 
 /// What reading found, mended and left out: `patchlight inspect` shows it.
@@ -33,12 +34,13 @@ struct SceneReport {
     std::size_t self_crossing_faces = 0;
     std::size_t nonmanifold_edges = 0;
     std::size_t t_junctions = 0;
-    std::size_t coplanar_overlaps = 0;  ///< pairs of faces of one plane that cover common area, same normal
-    std::size_t opposed_pairs = 0;      ///< triangles of the arrangement with a surface on both sides
-    std::size_t needles = 0;            ///< faces more than 1e5 times longer than wide
-    std::size_t crossing_faces = 0;     ///< pairs of faces that pierce each other
-    double snap_distance = 0;           ///< metres
-    std::vector<std::string> warnings;  ///< whole sentences, in a fixed order
+    std::size_t coplanar_overlaps = 0;       ///< pairs of faces of one plane that cover common area, same normal
+    std::size_t opposed_pairs = 0;           ///< triangles of the arrangement with a surface on both sides
+    std::size_t needles = 0;                 ///< faces more than 1e5 times longer than wide
+    std::size_t crossing_faces = 0;          ///< pairs of faces that pierce each other
+    double snap_distance = 0;                ///< metres
+    std::vector<std::string> empty_objects;  ///< names whose faces all have no area
+    std::vector<std::string> warnings;       ///< whole sentences, in a fixed order
 };
 
 struct LoadedScene {

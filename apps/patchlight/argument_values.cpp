@@ -183,4 +183,22 @@ double number_in(const std::string& option, const std::string& text)
     return *value;
 }
 
+double bytes_in(const std::string& option, const std::string& text)
+{
+    static const std::vector<std::pair<std::string_view, double>> units{
+        {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}, {"TiB", 0x1p40}, {"kB", 1e3},
+        {"MB", 1e6},     {"GB", 1e9},     {"TB", 1e12},    {"B", 1}};
+    for (const auto& [unit, bytes] : units) {
+        if (!text.ends_with(unit)) {
+            continue;
+        }
+        const auto number = exactly<double>(std::string_view(text).substr(0, text.size() - unit.size()));
+        if (number && *number > 0) {
+            return *number * bytes;
+        }
+        break;
+    }
+    refuse(option, text, "a size such as 8GiB or 500MB");
+}
+
 }  // namespace patchlight

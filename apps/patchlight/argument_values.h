@@ -23,6 +23,8 @@ std::vector<int> shots_in(const std::string& option, const std::string& text);
 /// MATERIAL=W or MATERIAL=r,g,b.
 std::pair<std::string, Rgb> emitter_in(const std::string& option, const std::string& text);
 WhichCycle cycle_in(const std::string& option, const std::string& text);
+/// Bytes: a number and B, kB, MB, GB, TB (powers of 1000) or KiB, MiB, GiB, TiB (of 1024).
+double bytes_in(const std::string& option, const std::string& text);
 double number_in(const std::string& option, const std::string& text);
 
 }  // namespace patchlight

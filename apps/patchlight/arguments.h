@@ -2,6 +2,7 @@
 
 #include "apps/imaging/picture.h"
 #include "apps/run/run_folder.h"
+#include "formfactor/pair_factor.h"
 #include "meshing/read_scene.h"
 #include "solver/adaptive.h"
 
@@ -76,13 +77,37 @@ struct ExportCommand {
     std::string output;
 };
 
+struct FormFactorsCommand {
+    SceneArguments scene;
+    FormFactorMethod method = FormFactorMethod::exact;
+    std::optional<std::pair<std::string, std::string>> between;  ///< objects; unset: all patches of the uniform mesh
+    PairOptions pair;
+    FormFactorOptions matrix;
+    MeshingOptions meshing;
+    std::string output;   ///< .csv or .bin; empty: the matrix isn't kept
+    std::string patches;  ///< CSV that tells what the rows are; empty: none
+    bool repair = false;
+    double memory = 0;  ///< bytes; 0: 80 % of what the machine has
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+
+struct ValidateCommand {
+    std::optional<FormFactorMethod> method;  ///< unset: all
+    std::uint64_t seed = 1;
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+
 /// What only prints: --help and --version.
 struct PrintCommand {
     std::string text;
 };
 
 using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
-                             PrintCommand>;
+                             FormFactorsCommand, ValidateCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

@@ -22,6 +22,12 @@ double physical_memory()
     return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
 }
 
+std::string in_gib(double bytes)
+{
+    const double gib = bytes / (1024.0 * 1024 * 1024);
+    return gib >= 1 ? fmt::format("{:.1f} GiB", gib) : fmt::format("{:.2g} GiB", gib);
+}
+
 double elements_of(const Scene& scene, const AdaptiveOptions& options)
 {
     const double budget = static_cast<double>(options.max_elements);
@@ -50,12 +56,30 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
 void check_memory(const Scene& scene, const AdaptiveOptions& options)
 {
     const double needed = estimate_cost(scene, options).bytes;
-    const double limit = 0.8 * physical_memory();
-    if (needed > limit) {
-        constexpr double gib = 1024.0 * 1024 * 1024;
-        throw LimitError(fmt::format("needs {:.1f} GiB, limit {:.1f} GiB (80 % of the memory); ask for fewer elements, "
-                                     "longer edges or fewer rays",
-                                     needed / gib, limit / gib));
+    require_memory(needed, 0, "ask for fewer elements, longer edges or fewer rays");
+}
+
+double uniform_elements(const Scene& scene, const MeshingOptions& meshing)
+{
+    const double budget = static_cast<double>(meshing.max_elements);
+    if (meshing.max_edge <= 0) {
+        return budget;
+    }
+    const double count = total_area(scene) / (area_per_squared_edge * meshing.max_edge * meshing.max_edge);
+    return meshing.max_elements > 0 ? std::min(count, budget) : count;
+}
+
+double mesh_bytes(double elements)
+{
+    return elements * bytes_per_element;
+}
+
+void require_memory(double needed, double limit, const std::string& instead)
+{
+    const double allowed = limit > 0 ? limit : 0.8 * physical_memory();
+    if (needed > allowed) {
+        throw LimitError(fmt::format("needs {}, limit {} ({}); {}", in_gib(needed), in_gib(allowed),
+                                     limit > 0 ? "--memory" : "80 % of the memory", instead));
     }
 }
 

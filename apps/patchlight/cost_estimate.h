@@ -4,6 +4,7 @@
 #include "solver/adaptive.h"
 
 #include <cstddef>
+#include <string>
 
 namespace patchlight {
 
@@ -18,5 +19,14 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options);
 
 /// Throws LimitError when the machine's memory is too small for a solve.
 void check_memory(const Scene& scene, const AdaptiveOptions& options);
+
+/// Triangles of the uniform mesh, roughly: those of `max_edge`, and no more than `max_elements`.
+double uniform_elements(const Scene& scene, const MeshingOptions& meshing);
+
+/// What meshing and holding so many elements takes, without factors.
+double mesh_bytes(double elements);
+
+/// Throws LimitError ("needs … GiB, limit … GiB (…); `instead`"). `limit` in bytes; 0: 80 % of the machine's memory.
+void require_memory(double needed, double limit, const std::string& instead);
 
 }  // namespace patchlight

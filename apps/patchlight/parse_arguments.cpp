@@ -1,23 +1,23 @@
 #include "apps/patchlight/arguments.h"
 
 #include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/form_factor_arguments.h"
+#include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/usage_error.h"
 
 #include <fmt/format.h>
 
-#include <map>
-#include <set>
+#include <algorithm>
 
 namespace patchlight {
 
 namespace {
 
-const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
-constexpr int most_threads = 1024;
+constexpr const char* run_json = "print run.json instead of a summary";
 
 /// Words that are only understood once everything has been read.
 struct Texts {
-    std::vector<std::string> two_sided, emitters;
+    SceneTexts scene;
     std::string refine = "intensity", solver = "gauss-seidel", method = "hemisphere", indicator = "residual",
                 marking = "doerfler", directions = "stratified", order = "unshot-power", pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto",
                 cycle = "last", from, to, up = "0,1,0";
@@ -25,44 +25,6 @@ struct Texts {
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;
 };
-
-template <class Mode>
-std::vector<std::string> words(const ModeNames<Mode>& names)
-{
-    std::vector<std::string> result;
-    for (const auto& entry : names) {
-        result.push_back(entry.first);
-    }
-    return result;
-}
-
-void add_scene(CLI::App& app, SceneArguments& scene, Texts& texts)
-{
-    app.add_option("scene", scene.file, "OBJ, glTF or GLB file")->required()->type_name("SCENE");
-    app.add_option("--unit", scene.unit_name, "unit of the file's coordinates")
-        ->check(CLI::IsMember({"m", "cm", "mm", "in", "ft"}))
-        ->capture_default_str();
-    app.add_option("--two-sided", texts.two_sided, "a material with two sides, or all; may be given again [none]")
-        ->type_name("MATERIAL|all")
-        ->allow_extra_args(false);
-    app.add_option("--emitter", texts.emitters,
-                   "exitance in W/m2 of a material, one number or r,g,b; may be given again [the file's]")
-        ->type_name("MATERIAL=W")
-        ->allow_extra_args(false);
-    app.add_option("--max-reflectance", scene.options.max_reflectance, "used where a file says exactly 1")
-        ->check(number_between(1e-6, 0.999999))
-        ->type_name("RHO")
-        ->capture_default_str();
-}
-
-void add_machine(CLI::App& app, int& threads, bool& quiet, bool& json)
-{
-    app.add_option("--threads", threads, "threads to work with [all]")
-        ->check(whole_between(1, most_threads))
-        ->type_name("N");
-    app.add_flag("--quiet", quiet, "no progress; warnings and errors only [off]");
-    app.add_flag("--json", json, "print run.json instead of a summary [off]");
-}
 
 void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
 {
@@ -155,26 +117,9 @@ void add_pictures(CLI::App& app, SolveCommand& c, Texts& t)
         ->type_name("NAME|FILE");
 }
 
-void finish_scene(SceneArguments& scene, const Texts& t)
-{
-    scene.options.unit = metres_per(scene.unit_name);
-    for (const std::string& name : t.two_sided) {
-        if (name == "all") {
-            scene.options.all_two_sided = true;
-        } else {
-            scene.options.two_sided.push_back(name);
-        }
-    }
-    for (const std::string& text : t.emitters) {
-        if (!scene.options.emitters.insert(emitter_in("--emitter", text)).second) {
-            throw UsageError("usage", "--emitter: \"" + text + "\" names a material for the second time");
-        }
-    }
-}
-
 void finish_solve(SolveCommand& c, const Texts& t)
 {
-    finish_scene(c.scene, t);
+    finish_scene(c.scene, t.scene);
     AdaptiveOptions& o = c.options;
     o.refine = mode_of(refine_names(), t.refine);
     o.final.solver = mode_of(solver_names(), t.solver);
@@ -264,15 +209,20 @@ struct Parser {
     RenderCommand render;
     ProbeCommand probe;
     ExportCommand exported;
-    Texts solve_texts, inspect_texts, render_texts, probe_texts;
+    FormFactorsCommand form_factors;
+    ValidateCommand validate;
+    Texts solve_texts, render_texts, probe_texts;
+    SceneTexts inspect_texts;
+    FormFactorTexts form_factor_texts;
+    std::string validate_method;
 
     Parser()
     {
         app.require_subcommand(1);
         app.set_version_flag("--version", fmt::format("patchlight {} ({})", tool_version(), tool_commit()));
         app.set_help_flag("-h,--help", "print this and stop");
-        app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 bad scene, 4 not converged, 5 over a limit,\n"
-                   "6 output could not be written, 130/143 interrupted.\n"
+        app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 bad scene, 4 not converged or a bound\n"
+                   "missed, 5 over a limit, 6 output could not be written, 130/143 interrupted.\n"
                    "patchlight COMMAND --help tells a command's options.");
         add_demo();
         add_inspect();
@@ -280,13 +230,17 @@ struct Parser {
         add_render(*app.add_subcommand("render", "A picture of a stored run"), render, render_texts);
         add_probe();
         add_export();
+        add_form_factors(*app.add_subcommand("formfactors", "Form factors between two objects, or of all patches"),
+                         form_factors, form_factor_texts);
+        add_validate(*app.add_subcommand("validate", "Every form-factor method against known answers"), validate,
+                     validate_method);
     }
 
     void add_demo()
     {
         auto& c = *app.add_subcommand("demo", "The Cornell box: coarse, refined, and both side by side");
         c.add_option("-o", demo.folder, "folder to write")->type_name("DIR")->capture_default_str();
-        add_machine(c, demo.threads, demo.quiet, demo.json);
+        add_machine(c, demo.threads, demo.quiet, demo.json, run_json);
     }
 
     void add_inspect()
@@ -299,12 +253,12 @@ struct Parser {
     void add_solve()
     {
         auto& c = *app.add_subcommand("solve", "Mesh, light, error: the whole loop on a scene");
-        add_scene(c, solve.scene, solve_texts);
+        add_scene(c, solve.scene, solve_texts.scene);
         c.add_option("-o", solve.run, "new folder, or one to resume")->required()->type_name("RUN");
         add_meshing(c, solve, solve_texts);
         add_light(c, solve, solve_texts);
         add_pictures(c, solve, solve_texts);
-        add_machine(c, solve.threads, solve.quiet, solve.json);
+        add_machine(c, solve.threads, solve.quiet, solve.json, run_json);
     }
 
     void add_probe()
@@ -333,11 +287,12 @@ struct Parser {
     /// CLI11 would only say that a command is missing.
     static void check_command(int argc, const char* const* argv)
     {
-        static const std::set<std::string> commands{"demo", "inspect", "solve", "render", "probe", "export"};
+        static const std::vector<std::string> commands{"demo",  "inspect", "solve",       "render",
+                                                       "probe", "export",  "formfactors", "validate"};
         const std::string word = argc > 1 ? argv[1] : "";
-        if (!word.empty() && word.front() != '-' && commands.count(word) == 0) {
-            throw UsageError("usage", "there is no command \"" + word +
-                                          "\"; there are demo, inspect, solve, render, probe, export");
+        if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {
+            throw UsageError("usage", fmt::format("there is no command \"{}\"; there are {}", word,
+                                                  fmt::join(commands, ", ")));
         }
     }
 
@@ -362,20 +317,19 @@ struct Parser {
         if (app.got_subcommand("export")) {
             return exported;
         }
+        if (app.got_subcommand("formfactors")) {
+            finish_form_factors(form_factors, form_factor_texts);
+            return form_factors;
+        }
+        if (app.got_subcommand("validate")) {
+            finish_validate(validate, validate_method);
+            return validate;
+        }
         return demo;
     }
 };
 
 }  // namespace
-
-double metres_per(const std::string& unit)
-{
-    const auto found = units.find(unit);
-    if (found == units.end()) {
-        throw UsageError("usage", "--unit: \"" + unit + "\" is none of m, cm, mm, in, ft");
-    }
-    return found->second;
-}
 
 Command parse_arguments(int argc, const char* const* argv)
 {

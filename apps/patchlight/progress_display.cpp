@@ -43,8 +43,11 @@ void ProgressDisplay::show(const Progress& progress)
     }
     drawn_at_ = now;
     const double seconds = std::chrono::duration<double>(now - stage_start_).count();
-    std::string text = fmt::format("\r\x1b[2K{} cycle {} {:<9} {} elements", bar(progress.fraction), progress.cycle,
-                                   progress.stage, progress.elements);
+    std::string text = fmt::format("\r\x1b[2K{} ", bar(progress.fraction));
+    if (progress.cycle >= 0) {
+        text += fmt::format("cycle {} ", progress.cycle);
+    }
+    text += fmt::format("{:<9} {} elements", progress.stage, progress.elements);
     if (progress.rays > 0 && seconds > 0.05) {
         text += fmt::format("  {:.2f} M rays/s", static_cast<double>(progress.rays) / seconds * 1e-6);
     }

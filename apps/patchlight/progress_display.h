@@ -26,7 +26,7 @@ private:
     const Messages& messages_;
     bool drawn_ = false;
     std::string stage_;
-    int cycle_ = -1;
+    int cycle_ = -2;
     Clock::time_point stage_start_{};
     Clock::time_point drawn_at_{};
 };

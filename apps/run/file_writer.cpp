@@ -53,14 +53,14 @@ private:
     int value_;
 };
 
-void write_temporary(const std::string& temporary, std::span<const unsigned char> bytes,
+void write_temporary(const std::string& temporary, const std::function<void(const FileWriter::Sink&)>& produce,
                      const std::filesystem::path& file)
 {
     const Descriptor out(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (out.get() < 0) {
         fail(file, errno);
     }
-    write_all(out.get(), bytes, file);
+    produce([&](std::span<const unsigned char> bytes) { write_all(out.get(), bytes, file); });
     if (::fsync(out.get()) != 0 && errno != EINVAL && errno != EROFS) {
         fail(file, errno);
     }
@@ -79,6 +79,11 @@ void sync_folder(const std::filesystem::path& folder)
 
 void FileWriter::write(const std::filesystem::path& file, std::span<const unsigned char> bytes)
 {
+    write_pieces(file, [&](const Sink& sink) { sink(bytes); });
+}
+
+void FileWriter::write_pieces(const std::filesystem::path& file, const std::function<void(const Sink&)>& produce)
+{
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     const std::string temporary =
         (folder / fmt::format(".{}.{}{}", file.filename().string(), ::getpid(), temporary_mark)).string();
@@ -90,7 +95,7 @@ void FileWriter::write(const std::filesystem::path& file, std::span<const unsign
         unfinished_.insert(temporary);
     }
     try {
-        write_temporary(temporary, bytes, file);
+        write_temporary(temporary, produce, file);
         const std::lock_guard lock(mutex_);
         if (abandoned_ || ::rename(temporary.c_str(), file.c_str()) != 0) {
             fail(file, abandoned_ ? EINTR : errno);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <span>
@@ -24,6 +25,12 @@ public:
     /// Throws OutputError; the file is then what it was, and no temporary is left.
     void write(const std::filesystem::path& file, std::span<const unsigned char> bytes);
     void write(const std::filesystem::path& file, std::string_view text);
+
+    /// Takes the next bytes of a file.
+    using Sink = std::function<void(std::span<const unsigned char>)>;
+    /// The same for what would be too much to hold twice: `produce` hands over piece by piece. What it throws goes
+    /// through, and leaves no temporary either.
+    void write_pieces(const std::filesystem::path& file, const std::function<void(const Sink&)>& produce);
 
     /// Makes a folder, and those above it. Throws OutputError.
     static void make_folder(const std::filesystem::path& folder);

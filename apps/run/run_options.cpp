@@ -21,6 +21,15 @@ const ModeNames<FormFactorMethod>& form_factor_names()
     return names;
 }
 
+const ModeNames<FormFactorMethod>& form_factor_method_names()
+{
+    static const ModeNames<FormFactorMethod> names{
+        {"closed-form", FormFactorMethod::closed_form}, {"hemicube", FormFactorMethod::hemicube},
+        {"hemisphere", FormFactorMethod::hemisphere},   {"quadrature", FormFactorMethod::quadrature},
+        {"exact", FormFactorMethod::exact},             {"monte-carlo", FormFactorMethod::monte_carlo}};
+    return names;
+}
+
 const ModeNames<Indicator>& indicator_names()
 {
     static const ModeNames<Indicator> names{{"residual", Indicator::residual},

@@ -20,7 +20,10 @@ using ModeNames = std::vector<std::pair<std::string, Mode>>;
 
 const ModeNames<Refine>& refine_names();
 const ModeNames<Solver>& solver_names();
+/// Those that a solve offers.
 const ModeNames<FormFactorMethod>& form_factor_names();
+/// All.
+const ModeNames<FormFactorMethod>& form_factor_method_names();
 const ModeNames<Indicator>& indicator_names();
 const ModeNames<Marking>& marking_names();
 const ModeNames<HemisphereDirections>& direction_names();

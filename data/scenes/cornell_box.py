@@ -17,8 +17,9 @@ def ceiling_around_light():
         yield [(x, Y, z) for x, z in (a, b, c, d)]
 
 
-def build():
-    scene = SceneFile("Cornell box (measured data of Cornell's Program of Computer Graphics)", "mm")
+def build(closed=False):
+    title = "Cornell box (measured data of Cornell's Program of Computer Graphics)"
+    scene = SceneFile(f"{title}, front wall added" if closed else title, "mm")
     scene.material("white", (0.75, 0.75, 0.75))
     scene.material("red", (0.63, 0.065, 0.05))
     scene.material("green", (0.14, 0.45, 0.09))
@@ -31,6 +32,8 @@ def build():
     scene.quad_towards("back_wall", "white", [(0, 0, Z), (X, 0, Z), (X, Y, Z), (0, Y, Z)], inside)
     scene.quad_towards("left_wall", "red", [(X, 0, 0), (X, Y, 0), (X, Y, Z), (X, 0, Z)], inside)
     scene.quad_towards("right_wall", "green", [(0, 0, 0), (0, Y, 0), (0, Y, Z), (0, 0, Z)], inside)
+    if closed:
+        scene.quad_towards("front_wall", "white", [(0, 0, 0), (X, 0, 0), (X, Y, 0), (0, Y, 0)], inside)
     for name, (outline, height) in (("short_block", SHORT), ("tall_block", TALL)):
         block(scene, name, outline, height)
     return scene
@@ -50,6 +53,8 @@ def block(scene, name, outline, height):
 def check(scene):
     scene.check_planar()
     room = {"floor", "ceiling", "light", "back_wall", "left_wall", "right_wall"}
+    if any(obj == "front_wall" for obj, _, _ in scene.faces):
+        assert not list(scene.open_edges(room | {"front_wall"})), "nothing is open"
     assert all(p[2] == 0 and q[2] == 0 for p, q in scene.open_edges(room)), "only the front is open"
     for name in ("short_block", "tall_block"):
         assert all(p[1] == 0 and q[1] == 0 for p, q in scene.open_edges({name})), "only the bottom is open"
@@ -62,3 +67,6 @@ if __name__ == "__main__":
     box.write_obj("cornell-box")
     view = write_view("cornell-box", "front", (278, 273, -800), (278, 273, 0), (0, 1, 0), 39.3)
     box.write_glb("cornell-box", 0.001, view)
+    closed_box = build(closed=True)
+    check(closed_box)
+    closed_box.write_obj("cornell-box-closed")

@@ -45,11 +45,10 @@ INSTANTIATE_TEST_SUITE_P(Threads, RefusedArguments,
 INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
                          ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"},
                                            std::vector<std::string>{"verify", "a"},
-                                           std::vector<std::string>{"formfactors", "a"},
                                            std::vector<std::string>{"report", "a", "-o", "b"},
-                                           std::vector<std::string>{"study", "run", "a"},
-                                           solving({"--refine", "both"}), solving({"--solver", "hierarchical"}),
-                                           solving({"--form-factors", "exact"}), solving({"--mesh", "a"}),
+                                           std::vector<std::string>{"study", "run", "a"}, solving({"--refine", "both"}),
+                                           solving({"--solver", "hierarchical"}), solving({"--form-factors", "exact"}),
+                                           solving({"--mesh", "a"}),
                                            std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -75,12 +74,38 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--exposure", "bright"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--fov", "0"}));
 
+std::vector<std::string> factors(std::vector<std::string> words)
+{
+    words.insert(words.begin(), {"formfactors", "room.obj"});
+    return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    FormFactors, RefusedArguments,
+    ::testing::Values(std::vector<std::string>{"formfactors"}, factors({"--between", "a"}),
+                      factors({"--method", "rays"}), factors({"--method", "monte-carlo"}), factors({"--origins", "4"}),
+                      factors({"--between", "a", "b", "--origins", "4"}),
+                      factors({"--between", "a", "b", "--method", "hemicube", "--resolution", "7"}),
+                      factors({"--between", "a", "b", "--method", "hemicube", "--rays", "100"}),
+                      factors({"--between", "a", "b", "--tolerance", "0"}),
+                      factors({"--between", "a", "b", "--relative-error", "0.01"}),
+                      factors({"--between", "a", "b", "-o", "f.csv"}),
+                      factors({"--between", "a", "b", "--max-elements", "4"}),
+                      factors({"--between", "a", "b", "--repair", "symmetric"}),
+                      factors({"--method", "hemisphere", "--rays", "65537"}), factors({"--rays", "64"}),
+                      factors({"--method", "hemisphere", "--tolerance", "1e-3"}), factors({"-o", "f.txt"}),
+                      factors({"-o", "f.csv", "--patches", "f.csv"}), factors({"--memory", "8"}),
+                      factors({"--memory", "-1GB"}), factors({"--memory", "GiB"}), factors({"--memory", "1e9"}),
+                      factors({"--max-edge", "1", "--max-elements", "100"}), factors({"--repair", "rows"}),
+                      factors({"--pictures", "none"}), std::vector<std::string>{"validate", "room.obj"},
+                      std::vector<std::string>{"validate", "--method", "all"}));
 
 TEST(Arguments, OptionsArriveWhereTheyBelong)
 {
-    const auto command = std::get<SolveCommand>(parse(
-        solving({"--refine", "none", "--max-elements", "3000", "--unit", "mm", "--emitter", "a=b=1,2,3", "--two-sided",
-                 "all", "--two-sided", "leaf", "--rays", "64", "--seed", "7", "--size", "20x10", "--threads", "2"})));
+    const auto command = std::get<SolveCommand>(
+        parse(solving({"--refine",    "none",  "--max-elements", "3000", "--unit", "mm", "--emitter", "a=b=1,2,3",
+                       "--two-sided", "all",   "--two-sided",    "leaf", "--rays", "64", "--seed",    "7",
+                       "--size",      "20x10", "--threads",      "2"})));
     EXPECT_EQ(command.options.refine, Refine::none);
     EXPECT_EQ(command.options.meshing.max_elements, 3000U) << "the uniform mesh is made for the budget";
     EXPECT_EQ(command.options.meshing.max_edge, 0);
@@ -97,13 +122,52 @@ TEST(Arguments, OptionsArriveWhereTheyBelong)
 
 TEST(Arguments, MaxEdgeIsInTheUnitAndLeavesTheBudgetAlone)
 {
-    const auto uniform = std::get<SolveCommand>(parse(solving({"--refine", "none", "--max-edge", "50", "--unit", "cm"})));
+    const auto uniform =
+        std::get<SolveCommand>(parse(solving({"--refine", "none", "--max-edge", "50", "--unit", "cm"})));
     EXPECT_DOUBLE_EQ(uniform.options.meshing.max_edge, 0.5);
     EXPECT_EQ(uniform.options.meshing.max_elements, 0U);
     const auto adaptive = std::get<SolveCommand>(parse(solving({"--max-edge", "2", "--max-elements", "500"})));
     EXPECT_EQ(adaptive.options.meshing.max_elements, 0U);
     EXPECT_EQ(adaptive.options.max_elements, 500U);
     EXPECT_EQ(adaptive.options.refine, Refine::intensity);
+}
+
+TEST(Arguments, FormFactorsBetweenObjectsAndOfAllPatchesHaveTheirOwnDefaults)
+{
+    const auto pair = std::get<FormFactorsCommand>(parse(factors({"--between", "-a", "b c", "--seed", "9"})));
+    EXPECT_EQ(pair.between, std::pair(std::string("-a"), std::string("b c")));
+    EXPECT_EQ(pair.method, FormFactorMethod::exact);
+    EXPECT_EQ(pair.pair.method, FormFactorMethod::exact);
+    EXPECT_EQ(pair.pair.seed, 9U);
+    EXPECT_FALSE(pair.scene.options.require_emitter);
+    EXPECT_FALSE(pair.scene.options.join_objects);
+
+    const auto cubes = std::get<FormFactorsCommand>(
+        parse(factors({"--between", "a", "b", "--method", "hemicube", "--origins", "4", "--resolution", "64"})));
+    EXPECT_EQ(cubes.pair.origins, 4);
+    EXPECT_EQ(cubes.pair.resolution, 64);
+
+    const auto all =
+        std::get<FormFactorsCommand>(parse(factors({"--method", "hemisphere", "--rays", "64", "--seed", "9", "--memory",
+                                                    "2GiB", "--repair", "symmetric", "-o", "f.bin"})));
+    EXPECT_FALSE(all.between);
+    EXPECT_EQ(all.matrix.method, FormFactorMethod::hemisphere);
+    EXPECT_EQ(all.matrix.rays, 64);
+    EXPECT_EQ(all.matrix.seed, 9U);
+    EXPECT_EQ(all.meshing.max_elements, 2000U);
+    EXPECT_EQ(all.memory, 0x1p31);
+    EXPECT_TRUE(all.repair);
+
+    const auto edge = std::get<FormFactorsCommand>(parse(factors({"--max-edge", "50", "--unit", "cm"})));
+    EXPECT_DOUBLE_EQ(edge.meshing.max_edge, 0.5);
+    EXPECT_EQ(edge.meshing.max_elements, 0U);
+}
+
+TEST(Arguments, ValidateTakesOneMethodOrAll)
+{
+    EXPECT_FALSE(std::get<ValidateCommand>(parse({"validate"})).method);
+    EXPECT_EQ(std::get<ValidateCommand>(parse({"validate", "--method", "closed-form"})).method,
+              FormFactorMethod::closed_form);
 }
 
 TEST(Arguments, ALeadingDashIsAFileNameAfterTwo)

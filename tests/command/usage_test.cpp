@@ -14,9 +14,11 @@ class UsageTest : public CommandTest {};
 
 TEST_F(UsageTest, EndsWithTwoAndAMessageBeforeAnyFileIsLookedAt)
 {
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{}, {"verify", "run"}, {"solve", "room.obj"},
-          {"solve", "room.obj", "-o", "run", "--threads", "1e9"}, {"solve", "room.obj", "-o", "run", "--refine", "both"}}) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{},
+                                                  {"verify", "run"},
+                                                  {"solve", "room.obj"},
+                                                  {"solve", "room.obj", "-o", "run", "--threads", "1e9"},
+                                                  {"solve", "room.obj", "-o", "run", "--refine", "both"}}) {
         const Outcome outcome = run(words, {.folder = folder_});
         EXPECT_EQ(outcome.code, 2);
         EXPECT_THAT(outcome.err, StartsWith("error[usage]: "));
@@ -33,19 +35,26 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
                               "=residual", "=doerfler", "=0.95", "=0.0001", "--unit", "=m"}) {
         EXPECT_THAT(help.out, HasSubstr(shown));
     }
-    std::istringstream lines(help.out);
-    for (std::string line; std::getline(lines, line);) {
-        // An option's first word, its values and its text: with a default, or required, or with [what is done without].
-        if (line.starts_with("  --") || line.starts_with("  -o")) {
-            std::string next;
-            if (line.find('[') == std::string::npos && line.find('=') == std::string::npos &&
-                line.find("REQUIRED") == std::string::npos) {
-                std::getline(lines, next);
+}
+
+TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
+{
+    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "export", "formfactors", "validate"}) {
+        std::istringstream lines(run({command, "--help"}).out);
+        for (std::string line, next; std::getline(lines, line);) {
+            // An option's first word, its values and its text: with a default, or required, or with [what is done
+            // without].
+            if (!line.starts_with("  --") && !line.starts_with("  -o")) {
+                continue;
             }
-            const std::string whole = line + next;
-            EXPECT_TRUE(whole.find('[') != std::string::npos || whole.find('=') != std::string::npos ||
-                        whole.find("REQUIRED") != std::string::npos)
-                << whole;
+            const auto says = [](const std::string& text) {
+                return text.find('[') != std::string::npos || text.find('=') != std::string::npos ||
+                       text.find("REQUIRED") != std::string::npos;
+            };
+            if (!says(line)) {
+                std::getline(lines, next);
+                EXPECT_TRUE(says(next) || line.starts_with("  --version")) << command << ": " << line << next;
+            }
         }
     }
 }
@@ -56,7 +65,8 @@ TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
-        for (const char* absent : {"hemicube", "discontinuity", "hierarchical", "vtu", "verify", "false-color", "--mesh "}) {
+        for (const char* absent :
+             {"hemicube", "discontinuity", "hierarchical", "vtu", "verify", "false-color", "--mesh "}) {
             EXPECT_THAT(help.out, Not(HasSubstr(absent))) << command;
         }
     }
@@ -67,7 +77,8 @@ TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
 TEST_F(UsageTest, CamerasAreCheckedToo)
 {
     const std::string scene = write_scene();
-    EXPECT_THAT(run(small({"solve", scene, "-o", path("run"), "--view", "back"})).err, HasSubstr("the scene has front"));
+    EXPECT_THAT(run(small({"solve", scene, "-o", path("run"), "--view", "back"})).err,
+                HasSubstr("the scene has front"));
     write_text(path("bad.json"), "{\"from\": [0,0,0], \"to\": [0,0,1], \"fow\": 40}");
     const Outcome typo = run(small({"solve", scene, "-o", path("run"), "--view", path("bad.json")}));
     EXPECT_EQ(typo.code, 2);

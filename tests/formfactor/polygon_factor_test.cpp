@@ -334,6 +334,19 @@ TEST(PolygonFactor, BadPolygonsAreNamed)
 }
 
 // Vertices on a straight edge and repeated ones are no fault.
+TEST(PolygonFactor, CornersARoundingApartAreOneCorner)
+{
+    // What clipping left of a patch of the Cornell box: the last edge runs backwards.
+    const Polygon doubled = {{0.015203677367485647, 0, 0.049644660791789877},
+                             {0.02051850313246293, 0, 0.019697763007164373},
+                             {6.3080853671883888e-17, 0, 8.4107804895845192e-17},
+                             {4.2053902447922596e-17, 0, 5.2567378059903242e-17}};
+    const Polygon clean(doubled.begin(), doubled.begin() + 3);
+    const Polygon above = {{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}};
+    EXPECT_NEAR(polygon_factor(doubled, above), polygon_factor(clean, above), 1e-14);
+    EXPECT_GT(polygon_factor(clean, above), 0.1);
+}
+
 TEST(PolygonFactor, SuperfluousVerticesChangeNothing)
 {
     const Polygon rich{{0, 0, 0}, {0.3, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0.6, 0}};

@@ -38,6 +38,29 @@ TEST_F(FileWriterTest, ReplacesAFileAndLeavesNothingBesideIt)
     EXPECT_EQ(entries(), 1U);
 }
 
+TEST_F(FileWriterTest, TakesAFileInPieces)
+{
+    const std::string one(5000, 'a'), two(7000, 'b');
+    const auto bytes = [](const std::string& text) {
+        return std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size());
+    };
+    writer_.write_pieces(folder_ / "a", [&](const FileWriter::Sink& sink) {
+        sink(bytes(one));
+        EXPECT_EQ(entries(), 1U) << "still under its temporary name";
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "a"));
+        sink(bytes(two));
+    });
+    EXPECT_EQ(read_bytes(folder_ / "a"), one + two);
+    EXPECT_THROW(writer_.write_pieces(folder_ / "a",
+                                      [&](const FileWriter::Sink& sink) {
+                                          sink(bytes(one));
+                                          throw std::runtime_error("enough");
+                                      }),
+                 std::runtime_error);
+    EXPECT_EQ(read_bytes(folder_ / "a"), one + two) << "the old file stays";
+    EXPECT_EQ(entries(), 1U);
+}
+
 TEST_F(FileWriterTest, WhenTheDiskIsFullTheOldFileStays)
 {
     writer_.write(folder_ / "a", "old");
