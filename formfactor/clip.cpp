@@ -1,6 +1,8 @@
 #include "formfactor/clip.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace patchlight {
 
@@ -24,6 +26,21 @@ void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, dou
         last_height = h;
     }
     if (!any) kept.clear();
+}
+
+double squared_distance_to_rim(const Vec3& p, std::span<const Vec3> polygon)
+{
+    double nearest = std::numeric_limits<double>::infinity();
+    Vec3 last = polygon.back();
+    for (const Vec3& corner : polygon) {
+        const Vec3 along = corner - last, off = p - last;
+        const double square = glm::dot(along, along);
+        const double t = square > 0 ? std::clamp(glm::dot(off, along) / square, 0.0, 1.0) : 0.0;
+        const Vec3 gap = off - t * along;
+        nearest = std::min(nearest, glm::dot(gap, gap));
+        last = corner;
+    }
+    return nearest;
 }
 
 }  // namespace patchlight

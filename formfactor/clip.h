@@ -19,4 +19,7 @@ struct Polygon : boost::container::small_vector<Vec3, 8> {
 /// of the plane (in the unit of dot(n, p)) count as in it; nothing is left when no corner is in front by more.
 void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, double snap, Polygon& kept);
 
+/// The square of the distance from a point to a polygon's rim.
+double squared_distance_to_rim(const Vec3& p, std::span<const Vec3> polygon);
+
 }  // namespace patchlight

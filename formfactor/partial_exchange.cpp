@@ -73,16 +73,8 @@ double clearance(std::span<const Vec3> polygon, std::span<const BlockerView> blo
     Vec3 middle(0.0);
     for (const Vec3& p : polygon) middle += p / static_cast<double>(polygon.size());
     double nearest = std::numeric_limits<double>::infinity();
-    for (const BlockerView& blocker : blockers) {
-        Vec3 last = blocker.corners.back();
-        for (const Vec3& p : blocker.corners) {
-            const Vec3 along = p - last, off = middle - last;
-            const double t = std::clamp(glm::dot(off, along) / glm::dot(along, along), 0.0, 1.0);
-            const Vec3 gap = off - t * along;
-            nearest = std::min(nearest, glm::dot(gap, gap));
-            last = p;
-        }
-    }
+    for (const BlockerView& blocker : blockers)
+        nearest = std::min(nearest, squared_distance_to_rim(middle, blocker.corners));
     return nearest;
 }
 
