@@ -240,9 +240,11 @@ std::string text_of(const MatrixResult& r, const FormFactorsCommand& command, co
     out += fmt::format("method       {}\n", name_of(form_factor_method_names(), command.method));
     out += fmt::format("patches      {}\n", r.mesh.patch_count());
     out += fmt::format("entries      {}, {} rows without any\n", a.entries, a.zero_rows);
-    out += fmt::format("{:<12} {}\n", samples_are(command.method), r.matrix.rays);
+    if (r.matrix.rays > 0) {
+        out += fmt::format("{:<12} {}\n", samples_are(command.method), r.matrix.rays);
+    }
     out += fmt::format("seconds      {:.3g}\n", r.seconds);
-    out += fmt::format("memory       {:.3g} MiB estimated\n", r.bytes / (1024.0 * 1024));
+    out += fmt::format("memory       {:.0f} MiB estimated\n", r.bytes / (1024.0 * 1024));
     out += fmt::format("closure      {:.2g} mean, {:.2g} worst, at patch {}{}\n", a.closure.mean, a.closure.worst,
                        a.closure.worst_patch.value,
                        scene.closed ? "" : " (open: where what escapes isn't known, only excess)");

@@ -116,6 +116,24 @@ TEST_F(FormFactorsTest, ObjectsThatAreNotThereOrHaveNoArea)
     EXPECT_EQ(run({"formfactors", path("squares.obj"), "--method", "monte-carlo"}).code, 2);
 }
 
+TEST_F(FormFactorsTest, BadGeometryHasAnAnswerAllTheSame)
+{
+    // Faces that aren't planar, that pierce one another, that lie in one another, that aren't convex; a needle.
+    write_text(folder_ / "squares.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1.2\nv 0 1 1\n"
+                                        "v .5 -1 -.5\nv .5 2 -.5\nv .5 2 1.5\nv .5 -1 1.5\n"
+                                        "v .6 .6 0\nv .9 .6 0\nv .7 .7 0\nv .6 .9 0\nv 0 0 2\nv 1 0 2\nv 1 1e-6 2\n"
+                                        "o floor\nf 1 2 3 4\no bent\nf 5 8 7 6\no plate\nf 9 10 11 12\n"
+                                        "o inlay\nf 13 14 15 16\no needle\nf 19 18 17\n");
+    const std::vector<std::pair<std::string, std::string>> pairs{
+        {"floor", "bent"}, {"floor", "plate"}, {"bent", "inlay"}, {"floor", "needle"}, {"floor", "inlay"}};
+    for (const auto& [from, to] : pairs) {
+        const double exact = answer(between(from, to, {"--json"}))["value"];
+        const double sampled = answer(between(from, to, {"--json", "--method", "hemisphere"}))["value"];
+        EXPECT_TRUE(exact >= 0 && exact <= 1) << from << " " << to;
+        EXPECT_NEAR(sampled, exact, 0.02 * exact) << from << " " << to;
+    }
+}
+
 TEST_F(FormFactorsTest, OfAllPatchesAsJson)
 {
     const Json found = answer(run({"formfactors", path("squares.obj"), "--method", "hemisphere", "--max-elements",
