@@ -1,74 +1,124 @@
 #include "formfactor/black_backs.h"
 
-#include "formfactor/occluded_exchange.h"
-#include "formfactor/unoccluded_exchange.h"
+#include "formfactor/random_numbers.h"
+
+#include <glm/vector_relational.hpp>
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace patchlight {
 
 namespace {
 
-constexpr double tolerance = 1e-5;
-
-struct Back {
-    std::array<Vec3, 3> corners;  ///< counter-clockwise seen from the black side
-    Vec3 normal{0.0};
-};
-
-std::vector<Back> black_backs(const Scene& scene)
-{
-    std::vector<Back> backs;
-    for (const SceneTriangle& t : scene.triangles) {
-        const Vec3 &a = scene.vertices[t.vertices[0]], &b = scene.vertices[t.vertices[1]],
-                   &c = scene.vertices[t.vertices[2]];
-        if (t.front.valid() && !t.back.valid()) backs.push_back({{a, c, b}, -scene.surface(t.front).frame.n});
-        if (t.back.valid() && !t.front.valid()) backs.push_back({{a, b, c}, -scene.surface(t.back).frame.n});
-    }
-    return backs;
-}
+constexpr std::size_t few_rays = 64, many_rays = 1024;
+constexpr std::uint64_t stream = 0xbacULL << 48;  // other random numbers than the rows'
 
 struct Scratch {
     std::size_t traced = 0;
-    std::vector<Blocker> between;
+    RayBatch rays;
+    HitBatch hits;
 };
 
-double exchange(const Blockers& blockers, std::span<const Vec3> patch, const Vec3& n, const Back& back, double allowed,
-                Scratch& scratch)
+double area_of(const Polygon& polygon)
 {
-    const Visibility visibility = blockers.between(patch, n, back.corners, back.normal, scratch.between);
-    if (visibility == Visibility::hidden) return 0;
-    Polygon front_patch, front_back;
-    keep_front(patch, back.normal, glm::dot(back.normal, back.corners[0]), blockers.snap(), front_patch);
-    keep_front(back.corners, n, glm::dot(n, patch[0]), blockers.snap(), front_back);
-    if (visibility == Visibility::visible) return unoccluded_exchange(front_patch, n, front_back, back.normal);
-    const ExchangeEstimate part = occluded_exchange(front_patch, n, front_back, back.normal, scratch.between,
-                                                    blockers.snap(),
-                                                    {.outer = OuterPolygon::first, .tolerance = allowed});
-    scratch.traced += part.nodes;
-    return part.value;
+    Vec3 twice(0.0);
+    for (std::size_t k = 2; k < polygon.size(); ++k)
+        twice += glm::cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
+    return 0.5 * glm::length(twice);
+}
+
+/// The patch cut along every contact that crosses it.
+std::vector<Polygon> cut_along_contacts(const std::array<Vec3, 3>& patch, const Vec3& n, const Blockers& blockers)
+{
+    std::vector<Polygon> pieces(1);
+    pieces[0].assign(patch.begin(), patch.end());
+    const double offset = glm::dot(n, patch[0]), snap = blockers.snap();
+    Vec3 low = glm::min(glm::min(patch[0], patch[1]), patch[2]) - snap;
+    Vec3 high = glm::max(glm::max(patch[0], patch[1]), patch[2]) + snap;
+    for (const Blocker& blocker : blockers.all()) {
+        Vec3 p = blocker.corners.back();
+        for (const Vec3& q : blocker.corners) {
+            const bool in_plane =
+                std::abs(glm::dot(n, p) - offset) <= snap && std::abs(glm::dot(n, q) - offset) <= snap;
+            const bool near = glm::all(glm::lessThanEqual(glm::min(p, q), high)) &&
+                              glm::all(glm::greaterThanEqual(glm::max(p, q), low));
+            if (in_plane && near && std::abs(glm::dot(blocker.normal, n)) < 1 - 1e-9) {
+                const Vec3 across = glm::normalize(glm::cross(n, q - p));
+                std::vector<Polygon> halves;
+                for (const Polygon& piece : pieces)
+                    for (const double side : {1.0, -1.0}) {
+                        Polygon half;
+                        keep_front(piece, side * across, side * glm::dot(across, p), snap, half);
+                        if (half.size() >= 3) halves.push_back(half);
+                    }
+                pieces = std::move(halves);
+            }
+            p = q;
+        }
+    }
+    return pieces;
+}
+
+Vec3 point_in(const Polygon& polygon, double area, RandomNumbers& random)
+{
+    double left = random.uniform() * area;
+    for (std::size_t k = 2;; ++k) {
+        const Vec3 a = polygon[k - 1] - polygon[0], b = polygon[k] - polygon[0];
+        const double part = 0.5 * glm::length(glm::cross(a, b));
+        if (left > part && k + 1 < polygon.size()) {
+            left -= part;
+            continue;
+        }
+        const double root = std::sqrt(random.uniform()), v = random.uniform();
+        return polygon[0] + root * (1 - v) * a + root * v * b;
+    }
+}
+
+/// The share of cosine-weighted rays from a piece that meet backs.
+double share_of_backs(const RayCaster& caster, const Polygon& piece, double area, const PlaneFrame& frame,
+                      std::size_t count, RandomNumbers& random, Scratch& scratch)
+{
+    scratch.rays.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const double u = random.uniform(), phi = 2 * std::numbers::pi * random.uniform();
+        const Vec3 d = std::sqrt(u) * (std::cos(phi) * frame.u + std::sin(phi) * frame.v) + std::sqrt(1 - u) * frame.n;
+        scratch.rays.set(k, caster.leave(point_in(piece, area, random), frame.n), d,
+                         std::numeric_limits<float>::infinity());
+    }
+    caster.closest(scratch.rays, scratch.hits);
+    scratch.traced += count;
+    std::size_t backs = 0;
+    for (std::size_t k = 0; k < count; ++k) backs += scratch.hits.surface[k] == HitBatch::black_back ? 1 : 0;
+    return static_cast<double>(backs) / static_cast<double>(count);
 }
 
 }  // namespace
 
-void add_backs(const Scene& scene, const PatchMesh& mesh, const Blockers& blockers, double least, FormFactorMatrix& F,
-               const WorkMonitor& monitor)
+void add_backs(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const Blockers& blockers,
+               double least, std::uint64_t seed, FormFactorMatrix& F, const WorkMonitor& monitor)
 {
     std::vector<PatchId> rows;
     for (const PatchId p : mesh.patches())
         if (std::abs(1 - F.raw_sum[p]) > least) rows.push_back(p);
-    const std::vector<Back> backs = black_backs(scene);
     F.rays += for_each_row<Scratch>(
         rows.size(), monitor,
         [&](std::size_t k, Scratch& scratch) {
             const PatchId p = rows[k];
             const auto c = mesh.corners(p);
-            const std::array<Vec3, 3> patch{mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])};
-            const Vec3 n = scene.surface(mesh.surface(p)).frame.n;
+            const PlaneFrame& frame = scene.surface(mesh.surface(p)).frame;
+            RandomNumbers random(seed, stream ^ p.value);
             double sum = 0;
-            for (const Back& back : backs)
-                sum += exchange(blockers, patch, n, back, tolerance * mesh.area(p), scratch);
+            for (const Polygon& piece : cut_along_contacts(
+                     {mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])}, frame.n, blockers)) {
+                const double area = area_of(piece);
+                double share = share_of_backs(caster, piece, area, frame, few_rays, random, scratch);
+                if (share > 0 && share < 1)
+                    share = share_of_backs(caster, piece, area, frame, many_rays, random, scratch);
+                sum += share * area;
+            }
             F.backs[p] = sum / mesh.area(p);
         },
         1);

@@ -16,6 +16,7 @@ namespace patchlight {
 namespace {
 
 constexpr double default_tolerance = 1e-5;
+constexpr double look_for_backs = 1e-4;  // rows that miss more may see some
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -202,7 +203,7 @@ private:
         case Visibility::partial: break;
         }
         ++scratch.counts.partial;
-        return partial_exchange(front_a, n, front_b, m, between, scratch.in_shaft, unoccluded(),
+        return partial_exchange(front_a, n, front_b, m, between, scratch.in_shaft, snap_, unoccluded(),
                                 tolerance_ * std::min(patches_.area[i], patches_.area[j]), scratch.partial);
     }
 
@@ -259,8 +260,9 @@ FormFactorMatrix whole_matrix(ExactAssembly& assembly, const PatchMesh& mesh)
 
 }  // namespace
 
-FormFactorMatrix exact_rows(const Scene& scene, const PatchMesh& mesh, const FormFactorOptions& options,
-                            const WorkMonitor& monitor, bool occluded, ExactCounts* counts)
+FormFactorMatrix exact_rows(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh,
+                            const FormFactorOptions& options, const WorkMonitor& monitor, bool occluded,
+                            ExactCounts* counts)
 {
     const Blockers blockers = occluded ? Blockers(scene) : Blockers({}, scene.diameter);
     ExactAssembly assembly(scene, mesh, blockers, options.tolerance > 0 ? options.tolerance : default_tolerance);
@@ -287,7 +289,7 @@ FormFactorMatrix exact_rows(const Scene& scene, const PatchMesh& mesh, const For
     F.raw_sum = F.escaped = F.backs = PatchField<double>(mesh.patch_count(), 0.0);
     for (std::size_t i = 0; i < F.size(); ++i)
         for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k) F.raw_sum[PatchId(i)] += F.factors[k];
-    if (scene.closed && occluded) add_backs(scene, mesh, blockers, 1e-4, F, monitor);
+    if (scene.closed && occluded) add_backs(scene, caster, mesh, blockers, look_for_backs, options.seed, F, monitor);
     if (!scene.closed)
         for (const PatchId p : mesh.patches()) F.escaped[p] = std::max(0.0, 1 - F.raw_sum[p]);
     if (counts != nullptr) *counts = sum;

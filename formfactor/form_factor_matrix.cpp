@@ -21,8 +21,8 @@ FormFactorMatrix form_factor_matrix(const Scene& scene, const RayCaster& caster,
     }
     case FormFactorMethod::hemicube: return hemicube_rows(scene, mesh, options, monitor);
     case FormFactorMethod::quadrature: return quadrature_rows(scene, caster, mesh, options, monitor);
-    case FormFactorMethod::exact: return exact_rows(scene, mesh, options, monitor);
-    case FormFactorMethod::closed_form: return exact_rows(scene, mesh, options, monitor, false);
+    case FormFactorMethod::exact: return exact_rows(scene, caster, mesh, options, monitor);
+    case FormFactorMethod::closed_form: return exact_rows(scene, caster, mesh, options, monitor, false);
     case FormFactorMethod::monte_carlo: break;
     }
     throw std::invalid_argument("monte-carlo is for pairs, not for whole matrices");

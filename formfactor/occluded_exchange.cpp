@@ -138,7 +138,7 @@ private:
         for (const Vec3& p : corners)
             for (const Vec3& q : corners) square = std::max(square, glm::dot(q - p, q - p));
         ++nodes_;
-        if (cell.area > sliver * square) return polygon_exchange(corners, target_, 1e-13);
+        if (cell.area > sliver * square) return fragment_exchange(corners, normal_, target_, target_normal_, 1e-13);
         views_.clear();
         return rule(cell, triangle_rule(8));
     }
@@ -285,37 +285,15 @@ private:
     VisibleScratch scratch_;
 };
 
-/// The square of how far the nearest blocker's rim is from a polygon's middle.
-double clearance(std::span<const Vec3> polygon, std::span<const Blocker> blockers)
-{
-    Vec3 middle(0.0);
-    for (const Vec3& p : polygon) middle += p / static_cast<double>(polygon.size());
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Blocker& blocker : blockers) nearest = std::min(nearest, squared_distance_to_rim(middle, blocker.corners));
-    return nearest;
-}
-
-bool precedes(std::span<const Vec3> a, std::span<const Vec3> b)
-{
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-    });
-}
-
-/// One answer for both ways round.
-bool second_is_farther(std::span<const Vec3> first, std::span<const Vec3> second, std::span<const Blocker> blockers)
-{
-    const double room_first = clearance(first, blockers), room_second = clearance(second, blockers);
-    return room_first != room_second ? room_first < room_second : precedes(second, first);
-}
-
 }  // namespace
 
 ExchangeEstimate occluded_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
                                    const Vec3& normal_second, std::span<const Blocker> blockers, double snap,
                                    const OccludedOptions& options)
 {
-    if (options.outer == OuterPolygon::farther && second_is_farther(first, second, blockers))
+    std::vector<BlockerView> views;
+    for (const Blocker& blocker : blockers) views.push_back(blocker.view());
+    if (is_second_outer(first, second, views))
         return OccludedIntegral(second, normal_second, first, normal_first, blockers, snap, options).run();
     return OccludedIntegral(first, normal_first, second, normal_second, blockers, snap, options).run();
 }

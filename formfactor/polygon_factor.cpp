@@ -52,7 +52,7 @@ void require_convex(const Points& polygon, const Vec3& normal, const char* which
         if (std::abs(glm::dot(polygon[i] - polygon[0], normal)) > slack) refuse(which, "is not planar");
         const Vec3 along = polygon[(i + 1) % polygon.size()] - polygon[i];
         const double length = glm::length(along);
-        // The direction of an edge that clipping left tiny is rounding; its neighbours tell.
+        // The direction of a tiny edge is rounding; its neighbours tell.
         if (length < 1e-3 * slack) continue;
         const Vec3 inward = glm::cross(normal, along);
         for (const Vec3& p : polygon)
@@ -65,15 +65,27 @@ struct Side {
     Points points;
     Vec3 normal;
 
+    Side(std::span<const Vec3> polygon, const Vec3& origin, double unit, const Vec3& known_normal)
+        : points(moved(polygon, origin, unit)), normal(known_normal)
+    {}
+
+    /// Checks the shape.
     Side(std::span<const Vec3> polygon, const Vec3& origin, double unit, const char* which)
+        : points(moved(polygon, origin, unit))
     {
-        points.reserve(polygon.size() + 1);
-        for (const Vec3& p : polygon) points.push_back((p - origin) / unit);
         const Vec3 twice = area_vector(points);
         const double size = largest_coordinate(points, points[0]), length = glm::length(twice);
         if (!(length > 1e-14 * size * size)) refuse(which, "has no area");
         normal = twice / length;
         require_convex(points, normal, which);
+    }
+
+    static Points moved(std::span<const Vec3> polygon, const Vec3& origin, double unit)
+    {
+        Points points;
+        points.reserve(polygon.size() + 1);
+        for (const Vec3& p : polygon) points.push_back((p - origin) / unit);
+        return points;
     }
 };
 
@@ -242,6 +254,19 @@ bool in_order(std::span<const Vec3> a, std::span<const Vec3> b)
     });
 }
 
+/// The unit in which both fit, and what rounding leaves of heights in it: a vertex of a shared edge lies in the
+/// other's plane but for the rounding of its coordinates.
+struct Place {
+    double unit = 0, snap = 0;
+
+    Place(std::span<const Vec3> low, std::span<const Vec3> high)
+    {
+        unit = std::max(largest_coordinate(low, low[0]), largest_coordinate(high, low[0]));
+        const double reach = std::max(largest_coordinate(low, Vec3(0.0)), largest_coordinate(high, Vec3(0.0)));
+        snap = 1e-13 + 4 * std::numeric_limits<double>::epsilon() * reach / unit;
+    }
+};
+
 }  // namespace
 
 double polygon_exchange(std::span<const Vec3> first, std::span<const Vec3> second, double tolerance)
@@ -252,14 +277,21 @@ double polygon_exchange(std::span<const Vec3> first, std::span<const Vec3> secon
     require_vertices(second, "second");
     const bool kept = in_order(first, second);
     const std::span<const Vec3> low = kept ? first : second, high = kept ? second : first;
-    const Vec3 origin = low[0];
-    const double unit = std::max(largest_coordinate(low, origin), largest_coordinate(high, origin));
-    const double reach = std::max(largest_coordinate(low, Vec3(0.0)), largest_coordinate(high, Vec3(0.0)));
-    if (!(unit > 0)) refuse("first", "has no area");
-    const Side a(low, origin, unit, kept ? "first" : "second"), b(high, origin, unit, kept ? "second" : "first");
-    // A vertex of a shared edge lies in the other's plane but for the rounding of its coordinates.
-    const double snap = 1e-13 + 4 * std::numeric_limits<double>::epsilon() * reach / unit;
-    return scaled_exchange(a, b, snap, tolerance) * unit * unit;
+    const Place place(low, high);
+    if (!(place.unit > 0)) refuse("first", "has no area");
+    const Side a(low, low[0], place.unit, kept ? "first" : "second"),
+        b(high, low[0], place.unit, kept ? "second" : "first");
+    return scaled_exchange(a, b, place.snap, tolerance) * place.unit * place.unit;
+}
+
+double fragment_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
+                         const Vec3& normal_second, double tolerance)
+{
+    if (!in_order(first, second)) return fragment_exchange(second, normal_second, first, normal_first, tolerance);
+    const Place place(first, second);
+    if (!(place.unit > 0)) return 0;
+    const Side a(first, first[0], place.unit, normal_first), b(second, first[0], place.unit, normal_second);
+    return std::max(0.0, scaled_exchange(a, b, place.snap, tolerance)) * place.unit * place.unit;
 }
 
 double polygon_factor(std::span<const Vec3> from, std::span<const Vec3> to, double tolerance)

@@ -20,6 +20,12 @@ namespace patchlight {
 /// finite, no area, a polygon not planar or not convex, and for a tolerance out of its range.
 double polygon_exchange(std::span<const Vec3> first, std::span<const Vec3> second, double tolerance = 1e-12);
 
+/// The same for what clipping leaves of such polygons, with their normals: corners may nearly coincide and slivers have
+/// next to no area, so no shape is checked and nothing is thrown. Never negative. Of a sliver rounding may leave errors
+/// of 1e-14 of the other's size, squared.
+double fragment_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
+                         const Vec3& normal_second, double tolerance = 1e-12);
+
 /// The form factor F12 = polygon_exchange / A1: the fraction of the power leaving `from` that reaches `to`. In [0, 1]
 /// but for rounding; exactly 0 when either is behind the other's plane or in it.
 double polygon_factor(std::span<const Vec3> from, std::span<const Vec3> to, double tolerance = 1e-12);

@@ -124,7 +124,7 @@ FormFactorMatrix quadrature_rows(const Scene& scene, const RayCaster& caster, co
             halves[i] = pairs.row(PatchId(i), scratch);
         });
     FormFactorMatrix F = mirrored(mesh, halves, scene.closed, nodes);
-    if (scene.closed) add_backs(scene, mesh, pairs.blockers(), look_for_backs, F, monitor);
+    if (scene.closed) add_backs(scene, caster, mesh, pairs.blockers(), look_for_backs, options.seed, F, monitor);
     return F;
 }
 

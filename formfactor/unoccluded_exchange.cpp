@@ -112,7 +112,7 @@ double unoccluded_exchange(std::span<const Vec3> first, const Vec3& normal_first
         // Around what clipping left as a sliver the contours would cancel; its area makes nodes exact enough.
         if (is_sliver(first, a.radius)) return by_lambert(first, normal_first, second);
         if (is_sliver(second, b.radius)) return by_lambert(second, normal_second, first);
-        return std::max(0.0, polygon_exchange(first, second, 1e-9));
+        return fragment_exchange(first, normal_first, second, normal_second, 1e-9);
     }
     const int degree = apart < 2.7 * radii ? 8 : 5;
     const std::vector<Node> from = nodes_on(first, degree), to = nodes_on(second, degree);

@@ -28,7 +28,7 @@ NodeBlock node_block(std::span<const std::array<Vec3, 3>> triangles, const Vec3&
 void mean_kernel(const NodeBlock& from, const NodeBlock& to, std::span<double> out);
 
 /// A_1 F_12 of two convex polygons in front of each other's plane, nothing in between, to about 1e-7 of the kernel's
-/// mean: by nodes on both where they are 1.3 radii apart, else by polygon_exchange.
+/// mean: by nodes on both where they are 1.3 radii apart, else by fragment_exchange.
 double unoccluded_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
                            const Vec3& normal_second);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -38,17 +39,41 @@ double contour(const Polygon& piece, const Vec3& n)
     return sum;
 }
 
-/// The planes of a blocker's cone from x, their normals inwards; edges seen end on have none.
-void cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::vector<Vec3>& planes)
+/// The plane of a blocker's cone from x through its edge k, the normal inwards; 0 for an edge seen end on.
+Vec3 cone_plane(const Vec3& x, const BlockerView& blocker, double height, std::size_t k)
+{
+    const Vec3 a = blocker.corners[k] - x, b = blocker.corners[k + 1 < blocker.corners.size() ? k + 1 : 0] - x;
+    // Seen from its front a blocker runs counter-clockwise.
+    const Vec3 m = height > 0 ? glm::cross(b, a) : glm::cross(a, b);
+    return size(m) > 1e-15 * size(a) * size(b) ? m : Vec3(0.0);
+}
+
+/// Whether a plane leaves the whole polygon outside or on it.
+bool is_outside(std::span<const Vec3> polygon, const Vec3& x, const Vec3& m)
+{
+    const double size_m = size(m);
+    if (size_m == 0) return false;
+    for (const Vec3& p : polygon)
+        if (height_over(m, size_m, p - x) > 0) return false;
+    return true;
+}
+
+/// All planes of the cone; false if one of them, found from `edge` on, has the whole polygon outside.
+bool cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::span<const Vec3> polygon,
+                 std::uint32_t& edge, std::vector<Vec3>& planes)
 {
     planes.clear();
-    const std::size_t count = blocker.corners.size();
-    for (std::size_t k = 0; k < count; ++k) {
-        const Vec3 a = blocker.corners[k] - x, b = blocker.corners[k + 1 < count ? k + 1 : 0] - x;
-        // Seen from its front a blocker runs counter-clockwise.
-        const Vec3 m = height > 0 ? glm::cross(b, a) : glm::cross(a, b);
-        if (size(m) > 1e-15 * size(a) * size(b)) planes.push_back(m);
+    const auto count = static_cast<std::uint32_t>(blocker.corners.size());
+    for (std::uint32_t turn = 0; turn < count; ++turn) {
+        const std::uint32_t k = edge + turn < count ? edge + turn : edge + turn - count;
+        const Vec3 m = cone_plane(x, blocker, height, k);
+        if (is_outside(polygon, x, m)) {
+            edge = k;
+            return false;
+        }
+        if (m != Vec3(0.0)) planes.push_back(m);
     }
+    return true;
 }
 
 /// heights[k·corners + i]: of corner i over plane k; what is rounding counts as 0. False if some plane has the whole
@@ -89,7 +114,7 @@ void split(Polygon& piece, const Vec3& m, std::vector<Polygon>& visible)
         last_height = h;
     }
     if (outside.size() >= 3) visible.push_back(std::move(outside));
-    piece = std::move(inside);
+    piece.swap(inside);
 }
 
 /// What of the pieces is outside the cone, into `next`.
@@ -122,16 +147,55 @@ double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygo
     Polygon& whole = scratch.pieces.front();
     whole.clear();
     for (const Vec3& p : polygon) whole.push_back(p - x);
-    for (const BlockerView& blocker : blockers) {
+    if (scratch.last_edges.size() < blockers.size()) scratch.last_edges.resize(blockers.size(), 0);
+    for (std::size_t k = 0; k < blockers.size(); ++k) {
+        const BlockerView& blocker = blockers[k];
         const double height = glm::dot(blocker.normal, x) - blocker.offset;
         if (height == 0) continue;
-        cone_planes(x, blocker, height, scratch.planes);
+        std::uint32_t& edge = scratch.last_edges[k];
+        if (edge >= blocker.corners.size()) edge = 0;
+        if (!cone_planes(x, blocker, height, polygon, edge, scratch.planes)) continue;
         take_away(scratch);
         if (scratch.pieces.empty()) return 0;
     }
     double sum = 0;
     for (const Polygon& piece : scratch.pieces) sum += contour(piece, n);
     return std::max(0.0, -sum / (2 * std::numbers::pi));
+}
+
+namespace {
+
+struct Measure {
+    double radius = 0;     ///< squared, about the middle of the corners
+    double clearance = 0;  ///< squared distance from there to the nearest blocker's rim
+
+    Measure(std::span<const Vec3> polygon, std::span<const BlockerView> blockers)
+        : clearance(std::numeric_limits<double>::infinity())
+    {
+        Vec3 middle(0.0);
+        for (const Vec3& p : polygon) middle += p / static_cast<double>(polygon.size());
+        for (const Vec3& p : polygon) radius = std::max(radius, glm::dot(p - middle, p - middle));
+        for (const BlockerView& blocker : blockers)
+            clearance = std::min(clearance, squared_distance_to_rim(middle, blocker.corners));
+    }
+};
+
+bool precedes(std::span<const Vec3> a, std::span<const Vec3> b)
+{
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
+        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+    });
+}
+
+}  // namespace
+
+bool is_second_outer(std::span<const Vec3> first, std::span<const Vec3> second, std::span<const BlockerView> blockers)
+{
+    constexpr double much = 9;  // of squares
+    const Measure a(first, blockers), b(second, blockers);
+    if (a.radius > much * b.radius) return true;
+    if (b.radius > much * a.radius) return false;
+    return a.clearance != b.clearance ? a.clearance < b.clearance : precedes(second, first);
 }
 
 }  // namespace patchlight

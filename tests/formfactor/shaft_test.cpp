@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace patchlight {
@@ -43,7 +44,7 @@ TEST(Shaft, ABlockerBesideItHidesNothing)
     EXPECT_EQ(past(square(1.1, 2, 0, 1, .5)), Visibility::visible);
     EXPECT_EQ(past(square(0, 1, 0, 1, 1.5)), Visibility::visible);
     EXPECT_EQ(past({{1.5, -3, .5}, {1.5, 3, -3}, {1.5, 3, 3}}), Visibility::visible);
-    EXPECT_EQ(past({{1.6, .4, .5}, {.4, 1.6, .5}, {1.6, 1.6, .5}}), Visibility::partial) << "it cuts the corner off";
+    EXPECT_EQ(past({{1.5, .4, .5}, {.4, 1.5, .5}, {1.6, 1.6, .5}}), Visibility::partial) << "it cuts the corner off";
     EXPECT_EQ(past({{2.1, 0, .5}, {0, 2.1, .5}, {2.1, 2.1, .5}}), Visibility::visible) << "past the corner, aslant";
 }
 
