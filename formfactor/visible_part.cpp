@@ -58,14 +58,15 @@ bool is_outside(std::span<const Vec3> polygon, const Vec3& x, const Vec3& m)
     return true;
 }
 
-/// All planes of the cone; false if one of them, found from `edge` on, has the whole polygon outside.
+/// All planes of the cone; false if one of them has the whole polygon outside. `edge`, which did last time, is tried
+/// first; the planes' order doesn't depend on it, so that neither do the bytes.
 bool cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::span<const Vec3> polygon,
                  std::uint32_t& edge, std::vector<Vec3>& planes)
 {
-    planes.clear();
     const auto count = static_cast<std::uint32_t>(blocker.corners.size());
-    for (std::uint32_t turn = 0; turn < count; ++turn) {
-        const std::uint32_t k = edge + turn < count ? edge + turn : edge + turn - count;
+    if (edge < count && is_outside(polygon, x, cone_plane(x, blocker, height, edge))) return false;
+    planes.clear();
+    for (std::uint32_t k = 0; k < count; ++k) {
         const Vec3 m = cone_plane(x, blocker, height, k);
         if (is_outside(polygon, x, m)) {
             edge = k;
@@ -113,7 +114,7 @@ void split(Polygon& piece, const Vec3& m, std::vector<Polygon>& visible)
         last = p;
         last_height = h;
     }
-    if (outside.size() >= 3) visible.push_back(std::move(outside));
+    if (outside.size() >= 3) visible.emplace_back().swap(outside);
     piece.swap(inside);
 }
 
@@ -123,7 +124,7 @@ void take_away(VisibleScratch& scratch)
     scratch.next.clear();
     for (Polygon& piece : scratch.pieces) {
         if (!touches_cone(piece, scratch.planes, scratch.heights)) {
-            scratch.next.push_back(std::move(piece));
+            scratch.next.emplace_back().swap(piece);
             continue;
         }
         scratch.cut = true;
@@ -152,9 +153,7 @@ double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygo
         const BlockerView& blocker = blockers[k];
         const double height = glm::dot(blocker.normal, x) - blocker.offset;
         if (height == 0) continue;
-        std::uint32_t& edge = scratch.last_edges[k];
-        if (edge >= blocker.corners.size()) edge = 0;
-        if (!cone_planes(x, blocker, height, polygon, edge, scratch.planes)) continue;
+        if (!cone_planes(x, blocker, height, polygon, scratch.last_edges[k], scratch.planes)) continue;
         take_away(scratch);
         if (scratch.pieces.empty()) return 0;
     }
