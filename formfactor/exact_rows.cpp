@@ -15,7 +15,7 @@ namespace patchlight {
 
 namespace {
 
-constexpr double default_tolerance = 1e-5;
+constexpr double default_tolerance = 2e-5;
 constexpr double look_for_backs = 1e-4;  // rows that miss more may see some
 
 using Triangle = std::array<Vec3, 3>;

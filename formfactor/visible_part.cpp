@@ -49,50 +49,38 @@ Vec3 cone_plane(const Vec3& x, const BlockerView& blocker, double height, std::s
 }
 
 /// Whether a plane leaves the whole polygon outside or on it.
-bool is_outside(std::span<const Vec3> polygon, const Vec3& x, const Vec3& m)
+bool is_outside(const Polygon& polygon, const Vec3& m)
 {
     const double size_m = size(m);
     if (size_m == 0) return false;
     for (const Vec3& p : polygon)
-        if (height_over(m, size_m, p - x) > 0) return false;
+        if (height_over(m, size_m, p) > 0) return false;
     return true;
 }
 
-/// All planes of the cone; false if one of them has the whole polygon outside. `edge`, which did last time, is tried
-/// first; the planes' order doesn't depend on it, so that neither do the bytes.
-bool cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::span<const Vec3> polygon,
-                 std::uint32_t& edge, std::vector<Vec3>& planes)
+void cone_planes(const Vec3& x, const BlockerView& blocker, double height, std::vector<Vec3>& planes)
 {
-    const auto count = static_cast<std::uint32_t>(blocker.corners.size());
-    if (edge < count && is_outside(polygon, x, cone_plane(x, blocker, height, edge))) return false;
     planes.clear();
-    for (std::uint32_t k = 0; k < count; ++k) {
-        const Vec3 m = cone_plane(x, blocker, height, k);
-        if (is_outside(polygon, x, m)) {
-            edge = k;
-            return false;
-        }
-        if (m != Vec3(0.0)) planes.push_back(m);
-    }
-    return true;
+    for (std::size_t k = 0; k < blocker.corners.size(); ++k)
+        if (const Vec3 m = cone_plane(x, blocker, height, k); m != Vec3(0.0)) planes.push_back(m);
 }
 
-/// heights[k·corners + i]: of corner i over plane k; what is rounding counts as 0. False if some plane has the whole
-/// piece outside.
-bool touches_cone(const Polygon& piece, const std::vector<Vec3>& planes, std::vector<double>& heights)
+/// heights[k·corners + i]: of corner i over plane k. The first plane that has the whole piece outside, else their
+/// number.
+std::size_t parting_plane(const Polygon& piece, const std::vector<Vec3>& planes, std::vector<double>& heights)
 {
     heights.resize(planes.size() * piece.size());
     double* h = heights.data();
-    for (const Vec3& m : planes) {
+    for (std::size_t k = 0; k < planes.size(); ++k) {
         double most = 0;
-        const double size_m = size(m);
+        const double size_m = size(planes[k]);
         for (const Vec3& p : piece) {
-            *h = height_over(m, size_m, p);
+            *h = height_over(planes[k], size_m, p);
             most = std::max(most, *h++);
         }
-        if (most <= 0) return false;
+        if (most <= 0) return k;
     }
-    return true;
+    return planes.size();
 }
 
 /// Cuts the piece at one plane: what is inside stays, what is outside goes to `visible`.
@@ -118,12 +106,17 @@ void split(Polygon& piece, const Vec3& m, std::vector<Polygon>& visible)
     piece.swap(inside);
 }
 
-/// What of the pieces is outside the cone, into `next`.
-void take_away(VisibleScratch& scratch)
+/// What of the pieces is outside the cone, into `next`. `edge`: the plane that parts a single piece from the cone.
+void take_away(VisibleScratch& scratch, std::uint32_t& edge)
 {
     scratch.next.clear();
     for (Polygon& piece : scratch.pieces) {
-        if (!touches_cone(piece, scratch.planes, scratch.heights)) {
+        const std::size_t parting = parting_plane(piece, scratch.planes, scratch.heights);
+        if (parting < scratch.planes.size()) {
+            if (scratch.pieces.size() == 1) {
+                edge = static_cast<std::uint32_t>(parting);
+                return;
+            }
             scratch.next.emplace_back().swap(piece);
             continue;
         }
@@ -138,23 +131,36 @@ void take_away(VisibleScratch& scratch)
     std::swap(scratch.pieces, scratch.next);
 }
 
+/// Whether some plane has the whole polygon outside; tells many pieces at once.
+bool is_beside(const Polygon& whole, const std::vector<Vec3>& planes, std::uint32_t& edge)
+{
+    for (std::uint32_t k = 0; k < planes.size(); ++k)
+        if (is_outside(whole, planes[k])) {
+            edge = k;
+            return true;
+        }
+    return false;
+}
+
 }  // namespace
 
 double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygon,
                       std::span<const BlockerView> blockers, VisibleScratch& scratch)
 {
     scratch.cut = false;
-    scratch.pieces.resize(1);
-    Polygon& whole = scratch.pieces.front();
-    whole.clear();
-    for (const Vec3& p : polygon) whole.push_back(p - x);
+    scratch.whole.clear();
+    for (const Vec3& p : polygon) scratch.whole.push_back(p - x);
+    scratch.pieces.assign(1, scratch.whole);
     if (scratch.last_edges.size() < blockers.size()) scratch.last_edges.resize(blockers.size(), 0);
     for (std::size_t k = 0; k < blockers.size(); ++k) {
         const BlockerView& blocker = blockers[k];
         const double height = glm::dot(blocker.normal, x) - blocker.offset;
         if (height == 0) continue;
-        if (!cone_planes(x, blocker, height, polygon, scratch.last_edges[k], scratch.planes)) continue;
-        take_away(scratch);
+        std::uint32_t& edge = scratch.last_edges[k];
+        if (edge < blocker.corners.size() && is_outside(scratch.whole, cone_plane(x, blocker, height, edge))) continue;
+        cone_planes(x, blocker, height, scratch.planes);
+        if (scratch.pieces.size() > 1 && is_beside(scratch.whole, scratch.planes, edge)) continue;
+        take_away(scratch, edge);
         if (scratch.pieces.empty()) return 0;
     }
     double sum = 0;

@@ -11,7 +11,8 @@ namespace patchlight {
 
 /// Working memory of visible_factor, reused from call to call.
 struct VisibleScratch {
-    std::vector<Polygon> pieces, next;  ///< what is still visible, relative to the point
+    Polygon whole;                      ///< the polygon relative to the point
+    std::vector<Polygon> pieces, next;  ///< what of it is still visible
     std::vector<double> heights;        ///< of the corners of one piece over the planes through one blocker's edges
     std::vector<Vec3> planes;
     std::vector<std::uint32_t> last_edges;  ///< of each blocker: the one that left the polygon outside last time
