@@ -2,6 +2,7 @@
 
 #include "apps/patchlight/scene_input.h"
 #include "apps/patchlight/usage_error.h"
+#include "formfactor/form_factor_matrix.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,8 @@ namespace {
 
 // A triangle of a Delaunay mesh with longest edge L covers about a quarter of L².
 constexpr double area_per_squared_edge = 0.25;
-// A row of factors holds at most an entry a ray: a column and a factor. Beside it mesh, fields and their copies.
-constexpr double bytes_per_entry = 12, bytes_per_element = 1500;
+// Beside the rows: mesh, fields and their copies.
+constexpr double bytes_per_element = 1500;
 
 double physical_memory()
 {
@@ -44,12 +45,12 @@ double elements_of(const Scene& scene, const AdaptiveOptions& options)
 CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
 {
     const double elements = elements_of(scene, options);
-    const double rows = std::min(elements, static_cast<double>(options.form_factors.rays));
     CostEstimate cost;
     cost.elements = static_cast<std::size_t>(std::min(elements, 1e18));
     // Cycles grow geometrically: together about three times the last one; half as many vertices as elements.
     cost.rays = 3 * elements * (options.form_factors.rays + 0.5 * options.gather.rays);
-    cost.bytes = elements * (rows * bytes_per_entry + bytes_per_element);
+    cost.bytes = matrix_bytes(options.form_factors.method, cost.elements, options.form_factors) +
+                 elements * bytes_per_element;
     return cost;
 }
 

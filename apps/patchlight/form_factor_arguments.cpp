@@ -63,8 +63,8 @@ void add_method_options(CLI::App& app, FormFactorTexts& t)
                                   ->capture_default_str();
     CLI::Option* tolerance =
         app.add_option("--tolerance", t.tolerance,
-                       "closed-form, quadrature, exact: error of a factor, absolute with --between, else of the row "
-                       "[with --between 1e-10, quadrature 1e-4; else the method's own]")
+                       "exact, quadrature, closed-form with --between: error of a factor; of a quadrature row "
+                       "[with --between 1e-10, quadrature 1e-4; else exact 2e-5, quadrature 1e-3]")
             ->check(number_between(1e-14, 0.01))
             ->type_name("T");
     t.bound.push_back({resolution, {Method::hemicube}, {Method::hemicube}});
@@ -72,7 +72,7 @@ void add_method_options(CLI::App& app, FormFactorTexts& t)
     t.bound.push_back({directions, {}, {Method::hemisphere}});
     t.bound.push_back({tolerance,
                        {Method::closed_form, Method::quadrature, Method::exact},
-                       {Method::closed_form, Method::quadrature, Method::exact}});
+                       {Method::quadrature, Method::exact}});
 }
 
 void add_matrix_options(CLI::App& app, FormFactorsCommand& c, FormFactorTexts& t)

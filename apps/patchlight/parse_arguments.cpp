@@ -72,8 +72,13 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--order", t.order, "what progressive shoots first")
         ->check(CLI::IsMember(words(order_names())))
         ->capture_default_str();
-    app.add_option("--form-factors", t.method, "how form factors are found")
+    app.add_option("--form-factors", t.method,
+                   "how the rows that are gathered are found; the light at vertices is always gathered by rays")
         ->check(CLI::IsMember(words(form_factor_names())))
+        ->capture_default_str();
+    app.add_option("--resolution", o.form_factors.resolution, "hemicube: pixels along an edge, even")
+        ->check(whole_between(4, 4096))
+        ->type_name("N")
         ->capture_default_str();
     app.add_option("--rays", o.form_factors.rays, "form-factor rays per patch")
         ->check(whole_between(16, 65536))
@@ -127,6 +132,13 @@ void finish_solve(SolveCommand& c, const Texts& t)
     if (o.final.solver == Solver::progressive && t.tolerance_option->count() == 0) o.final.tolerance = 0.01;
     o.final.order = mode_of(order_names(), t.order);
     o.form_factors.method = mode_of(form_factor_names(), t.method);
+    if (o.form_factors.resolution % 2 != 0) {
+        throw UsageError("usage", fmt::format("--resolution: {} is odd", o.form_factors.resolution));
+    }
+    if (o.final.solver == Solver::progressive && o.form_factors.method != FormFactorMethod::hemisphere) {
+        throw UsageError("usage", "--solver progressive shoots by rays over the hemisphere: with --form-factors " +
+                                      t.method + " take gauss-seidel or jacobi");
+    }
     o.form_factors.directions = mode_of(direction_names(), t.directions);
     o.estimate.indicator = mode_of(indicator_names(), t.indicator);
     o.mark.marking = mode_of(marking_names(), t.marking);

@@ -17,7 +17,10 @@ const ModeNames<Solver>& solver_names()
 
 const ModeNames<FormFactorMethod>& form_factor_names()
 {
-    static const ModeNames<FormFactorMethod> names{{"hemisphere", FormFactorMethod::hemisphere}};
+    static const ModeNames<FormFactorMethod> names{{"hemicube", FormFactorMethod::hemicube},
+                                                   {"hemisphere", FormFactorMethod::hemisphere},
+                                                   {"quadrature", FormFactorMethod::quadrature},
+                                                   {"exact", FormFactorMethod::exact}};
     return names;
 }
 
@@ -105,6 +108,7 @@ Json json_of(const AdaptiveOptions& o)
              {{"method", name_of(form_factor_names(), o.form_factors.method)},
               {"directions", name_of(direction_names(), o.form_factors.directions)},
               {"rays", o.form_factors.rays},
+              {"resolution", o.form_factors.resolution},
               {"shadow_rays", o.form_factors.shadow_rays},
               {"small_source", o.form_factors.small_source},
               {"seed", o.form_factors.seed}}},
