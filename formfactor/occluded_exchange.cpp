@@ -73,6 +73,7 @@ public:
     ExchangeEstimate run()
     {
         cut_along_events();
+        fair_share_ = 0.3 * options_.tolerance / static_cast<double>(std::max<std::size_t>(100, pending_.size()));
         for (Cell& cell : pending_) integrate(cell);
         const auto less = [](const Cell& a, const Cell& b) { return a.error < b.error; };
         std::ranges::make_heap(pending_, less);
@@ -104,7 +105,7 @@ private:
             Cell cell = std::move(open.back());
             open.pop_back();
             if (is_settled(cell)) continue;
-            if (cell.events.empty() || cell.area <= 1e-2 * options_.tolerance ||
+            if (cell.events.empty() || cell.area <= 3 * options_.tolerance ||
                 open.size() + pending_.size() > most_first_cells) {
                 pending_.push_back(std::move(cell));
                 continue;
@@ -231,22 +232,28 @@ private:
                });
     }
 
+    /// The rules of degree 5 and 8 where their difference is a cell's fair share of the tolerance, else one more.
+    void apply_rules(Cell& cell)
+    {
+        const double low = rule(cell, triangle_rule(5)), middle = rule(cell, triangle_rule(8));
+        cell.value = middle;
+        cell.error = std::abs(middle - low);
+        if (cell.error <= fair_share_) return;
+        cell.value = rule(cell, triangle_rule(12));
+        const double difference = std::abs(cell.value - low);
+        // Where the integrand is steep two rules can agree by chance: then the worse counts.
+        cell.error = std::max(difference, std::abs(cell.value - middle));
+        if (is_near(cell) || !cell.events.empty() || cell.blockers.size() > 1) return;
+        // Analytic: then twice the order leaves about the square; half of that exponent is on the safe side.
+        const double scale = std::max({std::abs(cell.value), std::abs(low), 1e-300});
+        cell.error = difference * std::sqrt(std::min(1.0, difference / scale));
+    }
+
     void integrate(Cell& cell)
     {
         views_.clear();
         for (const std::uint32_t k : cell.blockers) views_.push_back(blockers_[k].view());
-        const double low = rule(cell, triangle_rule(5));
-        cell.value = rule(cell, triangle_rule(11));
-        const double difference = std::abs(cell.value - low);
-        cell.error = difference;
-        if (is_near(cell)) {
-            // Two rules can agree by chance where the integrand is steep.
-            cell.error = std::max(difference, std::abs(cell.value - rule(cell, triangle_rule(8))));
-        } else if (cell.events.empty() && cell.blockers.size() == 1) {
-            // Analytic: then twice the order leaves about the square; half of that exponent is on the safe side.
-            const double scale = std::max({std::abs(cell.value), std::abs(low), 1e-300});
-            cell.error = difference * std::sqrt(std::min(1.0, difference / scale));
-        }
+        apply_rules(cell);
         if (!cell.events.empty()) {
             views_.clear();
             const double free = rule(cell, triangle_rule(1));
@@ -279,7 +286,7 @@ private:
     double least_ = 0;  ///< lengths below are rounding
     std::vector<ShadowEvent> events_;
     std::vector<Cell> pending_;
-    double settled_ = 0;
+    double settled_ = 0, fair_share_ = 0;
     std::size_t nodes_ = 0;
     std::vector<BlockerView> views_;
     VisibleScratch scratch_;
