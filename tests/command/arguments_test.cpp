@@ -47,7 +47,10 @@ INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
                                            std::vector<std::string>{"verify", "a"},
                                            std::vector<std::string>{"report", "a", "-o", "b"},
                                            std::vector<std::string>{"study", "run", "a"}, solving({"--refine", "both"}),
-                                           solving({"--solver", "hierarchical"}), solving({"--form-factors", "exact"}),
+                                           solving({"--solver", "hierarchical"}), solving({"--form-factors", "monte-carlo"}),
+                                           solving({"--form-factors", "closed-form"}),
+                                           solving({"--form-factors", "exact", "--solver", "progressive"}),
+                                           solving({"--resolution", "127"}),
                                            solving({"--mesh", "a"}),
                                            std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
 
