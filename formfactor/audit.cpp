@@ -1,8 +1,11 @@
 #include "formfactor/audit.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 namespace patchlight {
@@ -163,18 +166,14 @@ FormFactorAudit audit(const FormFactorMatrix& matrix, const PatchField<double>& 
 
 void sort_columns(FormFactorMatrix& matrix)
 {
-    std::vector<std::pair<std::uint32_t, double>> row;
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
-        row.clear();
-        for (std::size_t k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
-            row.emplace_back(matrix.columns[k], matrix.factors[k]);
+    tbb::parallel_for(std::size_t{0}, matrix.size(), [&](std::size_t i) {
+        const std::size_t first = matrix.row_start[i], count = matrix.row_start[i + 1] - first;
+        std::vector<std::pair<std::uint32_t, double>> row(count);
+        for (std::size_t k = 0; k < count; ++k) row[k] = {matrix.columns[first + k], matrix.factors[first + k]};
         std::ranges::sort(row, {}, &std::pair<std::uint32_t, double>::first);
-        std::size_t k = matrix.row_start[i];
-        for (const auto& [column, factor] : row) {
-            matrix.columns[k] = column;
-            matrix.factors[k++] = factor;
-        }
-    }
+        for (std::size_t k = 0; k < count; ++k)
+            std::tie(matrix.columns[first + k], matrix.factors[first + k]) = row[k];
+    });
 }
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #include "formfactor/black_backs.h"
 
+#include "formfactor/facet_points.h"
 #include "formfactor/random_numbers.h"
 
 #include <glm/vector_relational.hpp>
@@ -21,14 +22,6 @@ struct Scratch {
     RayBatch rays;
     HitBatch hits;
 };
-
-double area_of(const Polygon& polygon)
-{
-    Vec3 twice(0.0);
-    for (std::size_t k = 2; k < polygon.size(); ++k)
-        twice += glm::cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
-    return 0.5 * glm::length(twice);
-}
 
 /// The patch cut along every contact that crosses it.
 std::vector<Polygon> cut_along_contacts(const std::array<Vec3, 3>& patch, const Vec3& n, const Blockers& blockers)
@@ -62,31 +55,16 @@ std::vector<Polygon> cut_along_contacts(const std::array<Vec3, 3>& patch, const 
     return pieces;
 }
 
-Vec3 point_in(const Polygon& polygon, double area, RandomNumbers& random)
-{
-    double left = random.uniform() * area;
-    for (std::size_t k = 2;; ++k) {
-        const Vec3 a = polygon[k - 1] - polygon[0], b = polygon[k] - polygon[0];
-        const double part = 0.5 * glm::length(glm::cross(a, b));
-        if (left > part && k + 1 < polygon.size()) {
-            left -= part;
-            continue;
-        }
-        const double root = std::sqrt(random.uniform()), v = random.uniform();
-        return polygon[0] + root * (1 - v) * a + root * v * b;
-    }
-}
-
 /// The share of cosine-weighted rays from a piece that meet backs.
-double share_of_backs(const RayCaster& caster, const Polygon& piece, double area, const PlaneFrame& frame,
-                      std::size_t count, RandomNumbers& random, Scratch& scratch)
+double share_of_backs(const RayCaster& caster, const FacetPoints& piece, const PlaneFrame& frame, std::size_t count,
+                      RandomNumbers& random, Scratch& scratch)
 {
     scratch.rays.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
         const double u = random.uniform(), phi = 2 * std::numbers::pi * random.uniform();
         const Vec3 d = std::sqrt(u) * (std::cos(phi) * frame.u + std::sin(phi) * frame.v) + std::sqrt(1 - u) * frame.n;
-        scratch.rays.set(k, caster.leave(point_in(piece, area, random), frame.n), d,
-                         std::numeric_limits<float>::infinity());
+        const Vec3 from = piece.at(random.uniform(), random.uniform()).position;
+        scratch.rays.set(k, caster.leave(from, frame.n), d, std::numeric_limits<float>::infinity());
     }
     caster.closest(scratch.rays, scratch.hits);
     scratch.traced += count;
@@ -113,11 +91,12 @@ void add_backs(const Scene& scene, const RayCaster& caster, const PatchMesh& mes
             double sum = 0;
             for (const Polygon& piece : cut_along_contacts(
                      {mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])}, frame.n, blockers)) {
-                const double area = area_of(piece);
-                double share = share_of_backs(caster, piece, area, frame, few_rays, random, scratch);
+                if (!(glm::length(area_vector(piece)) > 1e-12 * mesh.area(p))) continue;
+                const FacetPoints points{std::span<const Vec3>(piece)};
+                double share = share_of_backs(caster, points, frame, few_rays, random, scratch);
                 if (share > 0 && share < 1)
-                    share = share_of_backs(caster, piece, area, frame, many_rays, random, scratch);
-                sum += share * area;
+                    share = share_of_backs(caster, points, frame, many_rays, random, scratch);
+                sum += share * points.area();
             }
             F.backs[p] = sum / mesh.area(p);
         },

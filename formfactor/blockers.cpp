@@ -39,9 +39,7 @@ struct Bounds {
 std::vector<Vec3> sorted_corners(const Blocker& blocker)
 {
     std::vector<Vec3> corners(blocker.corners.begin(), blocker.corners.end());
-    std::ranges::sort(corners, [](const Vec3& p, const Vec3& q) {
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-    });
+    std::ranges::sort(corners, [](const Vec3& p, const Vec3& q) { return precedes(p, q); });
     return corners;
 }
 
@@ -54,12 +52,7 @@ std::vector<Blocker> blockers_of(const Scene& scene)
         std::vector<Vec3> key = sorted_corners(blocker);
         all.emplace_back(std::move(key), std::move(blocker));
     }
-    const auto less = [](const Vec3& p, const Vec3& q) {
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-    };
-    std::ranges::stable_sort(all, [&](const auto& a, const auto& b) {
-        return std::ranges::lexicographical_compare(a.first, b.first, less);
-    });
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return precedes(a.first, b.first); });
     std::vector<Blocker> result;
     for (std::size_t i = 0; i < all.size(); ++i)
         if (i == 0 || all[i].first != all[i - 1].first) result.push_back(std::move(all[i].second));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formfactor/clip.h"
+#include "formfactor/convex_polygon.h"
 #include "formfactor/facets.h"
 #include "formfactor/shaft.h"
 

@@ -1,5 +1,6 @@
 #include "formfactor/exact_rows.h"
 
+#include "formfactor/audit.h"
 #include "formfactor/black_backs.h"
 #include "formfactor/partial_exchange.h"
 #include "formfactor/patch_tree.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace patchlight {
@@ -216,17 +216,6 @@ private:
     std::vector<HalfRow> rows_;
 };
 
-void sort_rows(FormFactorMatrix& F)
-{
-    tbb::parallel_for(std::size_t{0}, F.size(), [&](std::size_t i) {
-        const std::size_t first = F.row_start[i], count = F.row_start[i + 1] - first;
-        std::vector<std::pair<std::uint32_t, double>> row(count);
-        for (std::size_t k = 0; k < count; ++k) row[k] = {F.columns[first + k], F.factors[first + k]};
-        std::ranges::sort(row);
-        for (std::size_t k = 0; k < count; ++k) std::tie(F.columns[first + k], F.factors[first + k]) = row[k];
-    });
-}
-
 /// Both halves of all rows, in the patches' own order, columns ascending.
 FormFactorMatrix whole_matrix(ExactAssembly& assembly, const PatchMesh& mesh)
 {
@@ -254,7 +243,7 @@ FormFactorMatrix whole_matrix(ExactAssembly& assembly, const PatchMesh& mesh)
         }
         row = {};
     }
-    sort_rows(F);
+    sort_columns(F);
     return F;
 }
 

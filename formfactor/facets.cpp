@@ -143,7 +143,7 @@ std::vector<Facet> facets_of(const Scene& scene)
     return facets_where(scene, [](const Surface&, std::size_t) { return true; });
 }
 
-double total_area(const std::vector<Facet>& facets)
+double total_area(std::span<const Facet> facets)
 {
     double sum = 0;
     for (const Facet& facet : facets) sum += facet.area;

@@ -2,6 +2,7 @@
 
 #include "meshing/scene.h"
 
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -25,6 +26,6 @@ std::vector<Facet> facets_of(const Scene& scene, ObjectId object);
 std::vector<Facet> facets_of(const Scene& scene);
 
 /// m².
-double total_area(const std::vector<Facet>& facets);
+double total_area(std::span<const Facet> facets);
 
 }  // namespace patchlight

@@ -11,13 +11,6 @@ namespace {
 
 constexpr double default_tolerance = 1e-10;
 
-double area_of(std::span<const Facet> facets)
-{
-    double sum = 0;
-    for (const Facet& facet : facets) sum += facet.area;
-    return sum;
-}
-
 /// A_1 F_12 of two facets; adds to the estimate.
 void add_facets(const Blockers& blockers, const Facet& a, const Facet& b, const OccludedOptions& options,
                 std::vector<Blocker>& between, ExchangeEstimate& sum)
@@ -51,8 +44,8 @@ PairFactor pair_by_closed_form(std::span<const Facet> from, std::span<const Face
             exchange += polygon_exchange(a.corners, b.corners, tolerance);
             factor.samples += a.corners.size() * b.corners.size();
         }
-    factor.value = exchange / area_of(from);
-    factor.error = tolerance * std::min(1.0, area_of(to) / area_of(from));
+    factor.value = exchange / total_area(from);
+    factor.error = tolerance * std::min(1.0, total_area(to) / total_area(from));
     return factor;
 }
 
@@ -60,10 +53,10 @@ PairFactor pair_by_exact(const Scene& scene, std::span<const Facet> from, std::s
                          const PairOptions& options)
 {
     const Blockers blockers(scene);
-    const double area = area_of(from);
+    const double area = total_area(from);
     const double tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance;
     OccludedOptions each;
-    each.tolerance = tolerance * std::min(area, area_of(to)) / static_cast<double>(from.size() * to.size());
+    each.tolerance = tolerance * std::min(area, total_area(to)) / static_cast<double>(from.size() * to.size());
     ExchangeEstimate sum;
     std::vector<Blocker> between;
     for (const Facet& a : from)

@@ -11,13 +11,6 @@ namespace {
 constexpr double default_tolerance = 1e-4;
 constexpr std::size_t most_nodes = 3U << 19;  // about a second of one thread
 
-double area_of(std::span<const Facet> facets)
-{
-    double sum = 0;
-    for (const Facet& facet : facets) sum += facet.area;
-    return sum;
-}
-
 /// One order whichever way the pair is asked for: then both ways do the same arithmetic.
 bool in_order(std::span<const Facet> first, std::span<const Facet> second)
 {
@@ -34,8 +27,8 @@ bool in_order(std::span<const Facet> first, std::span<const Facet> second)
 PairFactor pair_by_quadrature(const Scene& scene, const RayCaster& caster, std::span<const Facet> from,
                               std::span<const Facet> to, const PairOptions& options)
 {
-    const double area = area_of(from);
-    if (!(area > 0 && area_of(to) > 0))
+    const double area = total_area(from);
+    if (!(area > 0 && total_area(to) > 0))
         throw std::invalid_argument("a form factor needs facets with an area on both sides");
     const bool straight = in_order(from, to);
     const Blockers blockers(scene);
@@ -45,7 +38,7 @@ PairFactor pair_by_quadrature(const Scene& scene, const RayCaster& caster, std::
         for (const Facet& b : straight ? to : from) exchange.add(a.corners, a.normal, b.corners, b.normal);
     // Relative to the smaller side, so that both ways stop at the same cell.
     OccludedOptions until;
-    until.tolerance = (options.tolerance > 0 ? options.tolerance : default_tolerance) * std::min(area, area_of(to));
+    until.tolerance = (options.tolerance > 0 ? options.tolerance : default_tolerance) * std::min(area, total_area(to));
     until.max_nodes = most_nodes;
     const ExchangeEstimate sum = exchange.refine(until, true);
     return {sum.value / area, sum.error / area, sum.nodes};

@@ -1,5 +1,6 @@
 #include "formfactor/polygon_factor.h"
 
+#include "formfactor/convex_polygon.h"
 #include "formfactor/edge_pair.h"
 #include "formfactor/lambert.h"
 
@@ -22,15 +23,6 @@ constexpr double shape_tolerance = 1e-6;
 constexpr double far_apart = 15;
 
 using Points = std::vector<Vec3>;
-
-/// Twice the area times the unit normal.
-Vec3 area_vector(std::span<const Vec3> polygon)
-{
-    Vec3 sum(0.0);
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        sum += glm::cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    return sum;
-}
 
 double largest_coordinate(std::span<const Vec3> polygon, const Vec3& origin)
 {
@@ -73,10 +65,10 @@ struct Side {
     Side(std::span<const Vec3> polygon, const Vec3& origin, double unit, const char* which)
         : points(moved(polygon, origin, unit))
     {
-        const Vec3 twice = area_vector(points);
-        const double size = largest_coordinate(points, points[0]), length = glm::length(twice);
-        if (!(length > 1e-14 * size * size)) refuse(which, "has no area");
-        normal = twice / length;
+        const Vec3 area = area_vector(points);
+        const double size = largest_coordinate(points, points[0]), length = glm::length(area);
+        if (!(length > 5e-15 * size * size)) refuse(which, "has no area");
+        normal = area / length;
         require_convex(points, normal, which);
     }
 
@@ -239,19 +231,10 @@ double scaled_exchange(const Side& first, const Side& second, double snap, doubl
         return by_areas(p, first.normal, q, second.normal);
     if (is_small_beside(ball_p, ball_q.radius, q)) return by_lambert(p, first.normal, q);
     if (is_small_beside(ball_q, ball_p.radius, p)) return by_lambert(q, second.normal, p);
-    const double smaller =
-        0.5 * std::min(glm::length(area_vector(first.points)), glm::length(area_vector(second.points)));
+    const double smaller = std::min(glm::length(area_vector(first.points)), glm::length(area_vector(second.points)));
     const double sum = by_contours(p, q, tolerance * smaller);
     // What rounding leaves of nothing; anything worse shows.
     return sum < 0 && sum > -1e-14 ? 0 : sum;
-}
-
-/// One order for both ways round, so that reciprocity is exact.
-bool in_order(std::span<const Vec3> a, std::span<const Vec3> b)
-{
-    return !std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end(), [](const Vec3& p, const Vec3& q) {
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-    });
 }
 
 /// The unit in which both fit, and what rounding leaves of heights in it: a vertex of a shared edge lies in the
@@ -275,7 +258,7 @@ double polygon_exchange(std::span<const Vec3> first, std::span<const Vec3> secon
         throw std::invalid_argument("polygon_factor: the tolerance must lie in 1e-15 … 1e-2");
     require_vertices(first, "first");
     require_vertices(second, "second");
-    const bool kept = in_order(first, second);
+    const bool kept = !precedes(second, first);
     const std::span<const Vec3> low = kept ? first : second, high = kept ? second : first;
     const Place place(low, high);
     if (!(place.unit > 0)) refuse("first", "has no area");
@@ -287,7 +270,7 @@ double polygon_exchange(std::span<const Vec3> first, std::span<const Vec3> secon
 double fragment_exchange(std::span<const Vec3> first, const Vec3& normal_first, std::span<const Vec3> second,
                          const Vec3& normal_second, double tolerance)
 {
-    if (!in_order(first, second)) return fragment_exchange(second, normal_second, first, normal_first, tolerance);
+    if (precedes(second, first)) return fragment_exchange(second, normal_second, first, normal_first, tolerance);
     const Place place(first, second);
     if (!(place.unit > 0)) return 0;
     const Side a(first, first[0], place.unit, normal_first), b(second, first[0], place.unit, normal_second);
@@ -297,7 +280,7 @@ double fragment_exchange(std::span<const Vec3> first, const Vec3& normal_first, 
 double polygon_factor(std::span<const Vec3> from, std::span<const Vec3> to, double tolerance)
 {
     const double exchange = polygon_exchange(from, to, tolerance);
-    return exchange / (0.5 * glm::length(area_vector(from)));
+    return exchange / glm::length(area_vector(from));
 }
 
 }  // namespace patchlight

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace patchlight {
@@ -15,10 +14,7 @@ constexpr std::size_t most_blocker_events = 2000;
 
 using Segment = std::array<Vec3, 2>;
 
-bool precedes(const Vec3& p, const Vec3& q)
-{
-    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
-}
+const auto by_place = [](const Vec3& p, const Vec3& q) { return precedes(p, q); };
 
 /// Corners and edges of several polygons, each once.
 struct Skeleton {
@@ -35,7 +31,7 @@ struct Skeleton {
     }
     void make_unique()
     {
-        std::ranges::sort(corners, precedes);
+        std::ranges::sort(corners, by_place);
         corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
         std::ranges::sort(edges, [](const Segment& a, const Segment& b) {
             return a[0] != b[0] ? precedes(a[0], b[0]) : precedes(a[1], b[1]);

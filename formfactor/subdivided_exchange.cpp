@@ -62,11 +62,8 @@ void merge_corners(Polygon& polygon, double snap)
 bool has_area(const Polygon& polygon, double snap)
 {
     if (polygon.size() < 3) return false;
-    Vec3 twice(0.0);
-    for (std::size_t k = 2; k < polygon.size(); ++k)
-        twice += glm::cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
     const Vec3 d = longest_extent(polygon);
-    return glm::length(twice) > std::max(snap, 1e-9 * glm::length(d)) * glm::length(d);
+    return 2 * glm::length(area_vector(polygon)) > std::max(snap, 1e-9 * glm::length(d)) * glm::length(d);
 }
 
 std::array<std::uint8_t, nodes> shuffled(RandomNumbers& random)

@@ -58,10 +58,7 @@ std::vector<Node> nodes_on(std::span<const Vec3> polygon, int degree)
 
 bool is_sliver(std::span<const Vec3> polygon, double radius)
 {
-    Vec3 twice(0.0);
-    for (std::size_t i = 2; i < polygon.size(); ++i)
-        twice += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
-    return glm::length(twice) < 1e-7 * radius * radius;
+    return glm::length(area_vector(polygon)) < 5e-8 * radius * radius;
 }
 
 double by_lambert(std::span<const Vec3> sliver, const Vec3& normal, std::span<const Vec3> other)

@@ -185,13 +185,6 @@ struct Measure {
     }
 };
 
-bool precedes(std::span<const Vec3> a, std::span<const Vec3> b)
-{
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-    });
-}
-
 }  // namespace
 
 bool is_second_outer(std::span<const Vec3> first, std::span<const Vec3> second, std::span<const BlockerView> blockers)

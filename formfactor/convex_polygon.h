@@ -15,6 +15,14 @@ struct Polygon : boost::container::small_vector<Vec3, 8> {
     operator std::span<const Vec3>() const { return {data(), size()}; }
 };
 
+/// The area times the unit normal of the front; 0 for fewer than three corners.
+Vec3 area_vector(std::span<const Vec3> polygon);
+
+/// An order of points by x, then y, then z, and of polygons by their corners: whoever computes something of two sides
+/// in this order gets the same bits both ways round.
+bool precedes(const Vec3& p, const Vec3& q);
+bool precedes(std::span<const Vec3> a, std::span<const Vec3> b);
+
 /// What of a convex polygon lies in front of a plane, dot(n, p) ≥ offset [SutherlandHodgman74]. Corners within `snap`
 /// of the plane (in the unit of dot(n, p)) count as in it; nothing is left when no corner is in front by more.
 void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, double snap, Polygon& kept);

@@ -1,10 +1,30 @@
-#include "formfactor/clip.h"
+#include "formfactor/convex_polygon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace patchlight {
+
+Vec3 area_vector(std::span<const Vec3> polygon)
+{
+    Vec3 twice(0.0);
+    for (std::size_t k = 2; k < polygon.size(); ++k)
+        twice += glm::cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
+    return 0.5 * twice;
+}
+
+bool precedes(const Vec3& p, const Vec3& q)
+{
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+}
+
+bool precedes(std::span<const Vec3> a, std::span<const Vec3> b)
+{
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                        [](const Vec3& p, const Vec3& q) { return precedes(p, q); });
+}
 
 void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, double snap, Polygon& kept)
 {
