@@ -48,6 +48,25 @@ void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, dou
     if (!any) kept.clear();
 }
 
+Vec3 longest_extent(std::span<const Vec3> polygon)
+{
+    Vec3 longest(0.0);
+    for (const Vec3& p : polygon)
+        for (const Vec3& q : polygon)
+            if (glm::dot(q - p, q - p) > glm::dot(longest, longest)) longest = q - p;
+    return longest;
+}
+
+void keep_half(std::span<const Vec3> polygon, const Vec3& axis, Polygon& kept)
+{
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const Vec3& p : polygon) {
+        least = std::min(least, glm::dot(axis, p));
+        most = std::max(most, glm::dot(axis, p));
+    }
+    keep_front(polygon, axis, 0.5 * (least + most), 0, kept);
+}
+
 double squared_distance_to_rim(const Vec3& p, std::span<const Vec3> polygon)
 {
     double nearest = std::numeric_limits<double>::infinity();

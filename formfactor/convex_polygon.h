@@ -27,6 +27,12 @@ bool precedes(std::span<const Vec3> a, std::span<const Vec3> b);
 /// of the plane (in the unit of dot(n, p)) count as in it; nothing is left when no corner is in front by more.
 void keep_front(std::span<const Vec3> polygon, const Vec3& n, double offset, double snap, Polygon& kept);
 
+/// From one corner to the one farthest from it, of the two farthest apart.
+Vec3 longest_extent(std::span<const Vec3> polygon);
+
+/// The half of a convex polygon on the side that `axis` points to, cut across the middle of its extent along it.
+void keep_half(std::span<const Vec3> polygon, const Vec3& axis, Polygon& kept);
+
 /// The square of the distance from a point to a polygon's rim.
 double squared_distance_to_rim(const Vec3& p, std::span<const Vec3> polygon);
 

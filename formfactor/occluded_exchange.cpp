@@ -15,8 +15,8 @@ namespace patchlight {
 
 namespace {
 
-/// Cells cut along events before anything is integrated.
-constexpr std::size_t most_first_cells = 20000;
+/// Cells cut along events before anything is integrated, and what nodes each is allowed for.
+constexpr std::size_t most_first_cells = 20000, nodes_of_a_cell = 160;
 /// What part of a cell's unoccluded light may be missed where an event crosses it unnoticed.
 constexpr double event_risk = 0.05;
 
@@ -101,12 +101,13 @@ private:
     {
         std::vector<Cell> open = std::move(pending_);
         pending_.clear();
+        const std::size_t most = std::min(most_first_cells, options_.max_nodes / nodes_of_a_cell);
         while (!open.empty()) {
             Cell cell = std::move(open.back());
             open.pop_back();
             if (is_settled(cell)) continue;
             if (cell.events.empty() || cell.area <= 3 * options_.tolerance ||
-                open.size() + pending_.size() > most_first_cells) {
+                open.size() + pending_.size() > most) {
                 pending_.push_back(std::move(cell));
                 continue;
             }
@@ -238,7 +239,7 @@ private:
         const double low = rule(cell, triangle_rule(5)), middle = rule(cell, triangle_rule(8));
         cell.value = middle;
         cell.error = std::abs(middle - low);
-        if (cell.error <= fair_share_) return;
+        if (cell.error <= fair_share_ || nodes_ >= options_.max_nodes) return;
         cell.value = rule(cell, triangle_rule(12));
         const double difference = std::abs(cell.value - low);
         // Where the integrand is steep two rules can agree by chance: then the worse counts.

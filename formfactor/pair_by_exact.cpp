@@ -11,26 +11,93 @@ namespace {
 
 constexpr double default_tolerance = 1e-10;
 
-/// A_1 F_12 of two facets; adds to the estimate.
-void add_facets(const Blockers& blockers, const Facet& a, const Facet& b, const OccludedOptions& options,
-                std::vector<Blocker>& between, ExchangeEstimate& sum)
+/// What an answer may cost by default, in blockers looked at from nodes: about a second.
+constexpr std::size_t default_work = 3'500'000;
+/// With a tolerance asked for.
+constexpr std::size_t patient_work = 100 * default_work;
+/// While more stand in between, cutting the polygons costs less than looking at all of them from every node.
+constexpr std::size_t many_blockers = 20;
+constexpr std::size_t fewest_nodes = 64;
+
+/// Looking past n blockers leaves the polygon in pieces that each of the later ones is held against.
+std::size_t work_of_a_node(std::size_t blockers)
 {
-    const Visibility visibility = blockers.between(a.corners, a.normal, b.corners, b.normal, between);
-    if (visibility == Visibility::hidden) return;
-    if (visibility == Visibility::visible) {
-        sum.value += polygon_exchange(a.corners, b.corners, 1e-13);
-        ++sum.nodes;
-        return;
-    }
-    Polygon front_a, front_b;
-    keep_front(a.corners, b.normal, glm::dot(b.normal, b.corners[0]), blockers.snap(), front_a);
-    keep_front(b.corners, a.normal, glm::dot(a.normal, a.corners[0]), blockers.snap(), front_b);
-    const ExchangeEstimate part =
-        occluded_exchange(front_a, a.normal, front_b, b.normal, between, blockers.snap(), options);
-    sum.value += part.value;
-    sum.error += part.error;
-    sum.nodes += part.nodes;
+    return blockers + blockers * blockers / 8;
 }
+
+/// A polygon with the unit normal of its plane.
+struct Side {
+    Polygon corners;
+    Vec3 normal;
+};
+
+/// Sums A_1 F_12 over pairs of facets within a share of the work each.
+class ExactSum {
+public:
+    ExactSum(const Blockers& blockers, double tolerance) : blockers_(blockers), tolerance_(tolerance) {}
+
+    void add(const Facet& a, const Facet& b, std::size_t work)
+    {
+        std::vector<Blocker> between;
+        const Visibility visibility = blockers_.between(a.corners, a.normal, b.corners, b.normal, between);
+        if (visibility == Visibility::hidden) return;
+        if (visibility == Visibility::visible) {
+            sum.value += polygon_exchange(a.corners, b.corners, 1e-13);
+            ++sum.nodes;
+            return;
+        }
+        Side first{{}, a.normal}, second{{}, b.normal};
+        keep_front(a.corners, b.normal, glm::dot(b.normal, b.corners[0]), blockers_.snap(), first.corners);
+        keep_front(b.corners, a.normal, glm::dot(a.normal, a.corners[0]), blockers_.snap(), second.corners);
+        add_part(first, second, between, work, tolerance_);
+    }
+
+    ExchangeEstimate sum;
+    std::size_t spent = 0;
+
+private:
+    /// Integrates, or first cuts the longer of both polygons in halves while many blockers stand in between.
+    void add_part(const Side& a, const Side& b, const std::vector<Blocker>& between, std::size_t work, double tolerance)
+    {
+        if (between.size() <= many_blockers || work < 2 * fewest_nodes * work_of_a_node(many_blockers)) {
+            const std::size_t nodes = std::max(fewest_nodes, work / work_of_a_node(between.size()));
+            const ExchangeEstimate part =
+                occluded_exchange(a.corners, a.normal, b.corners, b.normal, between, blockers_.snap(),
+                                  {.tolerance = tolerance, .max_nodes = std::min<std::size_t>(nodes, 1U << 21)});
+            sum.value += part.value;
+            sum.error += part.error;
+            sum.nodes += part.nodes;
+            spent += part.nodes * work_of_a_node(between.size());
+            return;
+        }
+        const Vec3 extent_a = longest_extent(a.corners), extent_b = longest_extent(b.corners);
+        const bool cut_a = glm::dot(extent_a, extent_a) > glm::dot(extent_b, extent_b);
+        for (const double side : {1.0, -1.0}) {
+            Side half{{}, cut_a ? a.normal : b.normal};
+            keep_half(cut_a ? a.corners : b.corners, side * (cut_a ? extent_a : extent_b), half.corners);
+            if (half.corners.size() >= 3) add_half(cut_a ? half : a, cut_a ? b : half, between, work / 2, tolerance / 2);
+        }
+    }
+
+    void add_half(const Side& a, const Side& b, const std::vector<Blocker>& between, std::size_t work, double tolerance)
+    {
+        std::vector<std::uint32_t> found;
+        const Visibility visibility = sift({a.corners, b.corners}, between, blockers_.snap(), found);
+        spent += between.size();
+        if (visibility == Visibility::hidden) return;
+        if (visibility == Visibility::visible) {
+            sum.value += fragment_exchange(a.corners, a.normal, b.corners, b.normal, 1e-13);
+            ++sum.nodes;
+            return;
+        }
+        std::vector<Blocker> rest;
+        for (const std::uint32_t k : found) rest.push_back(between[k]);
+        add_part(a, b, rest, work, tolerance);
+    }
+
+    const Blockers& blockers_;
+    double tolerance_;
+};
 
 }  // namespace
 
@@ -55,13 +122,15 @@ PairFactor pair_by_exact(const Scene& scene, std::span<const Facet> from, std::s
     const Blockers blockers(scene);
     const double area = total_area(from);
     const double tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance;
-    OccludedOptions each;
-    each.tolerance = tolerance * std::min(area, total_area(to)) / static_cast<double>(from.size() * to.size());
-    ExchangeEstimate sum;
-    std::vector<Blocker> between;
+    std::size_t pairs = from.size() * to.size(), left = options.tolerance > 0 ? patient_work : default_work;
+    ExactSum exact(blockers, tolerance * std::min(area, total_area(to)) / static_cast<double>(pairs));
     for (const Facet& a : from)
-        for (const Facet& b : to) add_facets(blockers, a, b, each, between, sum);
-    return {sum.value / area, sum.error / area, sum.nodes};
+        for (const Facet& b : to) {
+            const std::size_t before = exact.spent;
+            exact.add(a, b, left / pairs--);
+            left -= std::min(left, exact.spent - before);
+        }
+    return {exact.sum.value / area, exact.sum.error / area, exact.sum.nodes};
 }
 
 }  // namespace patchlight

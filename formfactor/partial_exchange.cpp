@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace patchlight {
 
@@ -108,15 +107,6 @@ struct Side {
     Vec3 normal;
 };
 
-Vec3 longest_extent(const Polygon& polygon)
-{
-    Vec3 longest(0.0);
-    for (const Vec3& p : polygon)
-        for (const Vec3& q : polygon)
-            if (glm::dot(q - p, q - p) > glm::dot(longest, longest)) longest = q - p;
-    return longest;
-}
-
 class PartialPair {
 public:
     PartialPair(double snap, PartialScratch& scratch) : snap_(snap), scratch_(scratch) {}
@@ -127,17 +117,10 @@ public:
         if (views.size() <= many_blockers || cuts >= most_cuts) return integrated(a, b, views, free, allowed);
         const Vec3 extent_a = longest_extent(a.corners), extent_b = longest_extent(b.corners);
         const bool cut_a = glm::dot(extent_a, extent_a) > glm::dot(extent_b, extent_b);
-        const Side& whole = cut_a ? a : b;
-        const Vec3 axis = cut_a ? extent_a : extent_b;
-        double least = std::numeric_limits<double>::infinity(), most = -least;
-        for (const Vec3& p : whole.corners) {
-            least = std::min(least, glm::dot(axis, p));
-            most = std::max(most, glm::dot(axis, p));
-        }
         double sum = 0;
         for (const double side : {1.0, -1.0}) {
-            Side half{{}, whole.normal};
-            keep_front(whole.corners, side * axis, side * 0.5 * (least + most), 0, half.corners);
+            Side half{{}, cut_a ? a.normal : b.normal};
+            keep_half(cut_a ? a.corners : b.corners, side * (cut_a ? extent_a : extent_b), half.corners);
             if (half.corners.size() < 3) continue;
             const Side &first = cut_a ? half : a, &second = cut_a ? b : half;
             Views rest;

@@ -20,33 +20,6 @@ constexpr std::size_t nodes = 16;         // of a pair of polygons
 constexpr std::size_t most_cuts = 64;     // at once: enough work for all threads
 constexpr double exact_tolerance = 1e-9;  // of an unoccluded exchange, relative to its smaller polygon
 
-/// The vector from the corner to the corner farthest apart.
-Vec3 longest_extent(const Polygon& polygon)
-{
-    Vec3 longest(0.0);
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) {
-            const Vec3 d = polygon[i] - polygon[j];
-            if (glm::dot(d, d) > glm::dot(longest, longest)) longest = d;
-        }
-    return longest;
-}
-
-/// The half of a polygon above or below the plane that halves its extent along d.
-void halve(const Polygon& polygon, const Vec3& d, bool upper, Polygon& half)
-{
-    double low = glm::dot(d, polygon[0]), high = low;
-    for (const Vec3& p : polygon) {
-        low = std::min(low, glm::dot(d, p));
-        high = std::max(high, glm::dot(d, p));
-    }
-    const double middle = 0.5 * (low + high);
-    if (upper)
-        keep_front(polygon, d, middle, 0, half);
-    else
-        keep_front(polygon, -d, -middle, 0, half);
-}
-
 /// Of corners that clipping put closer than `snap` together one stays: rounding decides which way their edge runs.
 void merge_corners(Polygon& polygon, double snap)
 {
@@ -127,11 +100,11 @@ void SubdividedExchange::cut(const Cell& parent, bool upper, Cell& child, Scratc
     child.root = parent.root;
     child.key = RandomNumbers(parent.key, upper ? 1 : 0).bits();
     if (glm::dot(extent_a, extent_a) >= glm::dot(extent_b, extent_b)) {
-        halve(parent.a, extent_a, upper, child.a);
+        keep_half(parent.a, upper ? extent_a : -extent_a, child.a);
         merge_corners(child.a, blockers_.snap());
         child.b = parent.b;
     } else {
-        halve(parent.b, extent_b, upper, child.b);
+        keep_half(parent.b, upper ? extent_b : -extent_b, child.b);
         merge_corners(child.b, blockers_.snap());
         child.a = parent.a;
     }
