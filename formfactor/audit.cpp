@@ -171,8 +171,7 @@ void sort_columns(FormFactorMatrix& matrix)
         std::vector<std::pair<std::uint32_t, double>> row(count);
         for (std::size_t k = 0; k < count; ++k) row[k] = {matrix.columns[first + k], matrix.factors[first + k]};
         std::ranges::sort(row, {}, &std::pair<std::uint32_t, double>::first);
-        for (std::size_t k = 0; k < count; ++k)
-            std::tie(matrix.columns[first + k], matrix.factors[first + k]) = row[k];
+        for (std::size_t k = 0; k < count; ++k) std::tie(matrix.columns[first + k], matrix.factors[first + k]) = row[k];
     });
 }
 

@@ -94,8 +94,7 @@ void add_backs(const Scene& scene, const RayCaster& caster, const PatchMesh& mes
                 if (!(glm::length(area_vector(piece)) > 1e-12 * mesh.area(p))) continue;
                 const FacetPoints points{std::span<const Vec3>(piece)};
                 double share = share_of_backs(caster, points, frame, few_rays, random, scratch);
-                if (share > 0 && share < 1)
-                    share = share_of_backs(caster, points, frame, many_rays, random, scratch);
+                if (share > 0 && share < 1) share = share_of_backs(caster, points, frame, many_rays, random, scratch);
                 sum += share * points.area();
             }
             F.backs[p] = sum / mesh.area(p);

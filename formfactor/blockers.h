@@ -23,8 +23,8 @@ struct Blocker {
 /// conservative, none is missed. All queries may be made from many threads at once.
 class Blockers {
 public:
-    /// All surfaces; of two back to back only one. What protrudes in front of a polygon's plane by less than 1e-8 of the
-    /// scene's diameter is in the plane, as everywhere on the snapped geometry.
+    /// All surfaces; of two back to back only one. What protrudes in front of a polygon's plane by less than 1e-8 of
+    /// the scene's diameter is in the plane, as everywhere on the snapped geometry.
     explicit Blockers(const Scene& scene);
     /// Of polygons given directly (tests, programs without a scene). `size`: the extent of everything, m.
     Blockers(std::vector<Blocker> blockers, double size);
@@ -50,6 +50,7 @@ private:
 };
 
 /// The same over blockers that are already clipped to the front of both planes: the indices of those in the shaft.
-Visibility sift(const Shaft& shaft, std::span<const Blocker> candidates, double snap, std::vector<std::uint32_t>& found);
+Visibility sift(const Shaft& shaft, std::span<const Blocker> candidates, double snap,
+                std::vector<std::uint32_t>& found);
 
 }  // namespace patchlight

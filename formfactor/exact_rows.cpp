@@ -66,8 +66,8 @@ public:
         blocks5_.resize(tree_.nodes.size());
         for (const std::uint32_t leaf : tree_.leaves) {
             const PatchTree::Node& node = tree_.nodes[leaf];
-            blocks5_[leaf] = node_block(std::span(patches_.corners).subspan(node.first, node.last - node.first),
-                                        normal_of(node), 5);
+            blocks5_[leaf] =
+                node_block(std::span(patches_.corners).subspan(node.first, node.last - node.first), normal_of(node), 5);
         }
         for (std::size_t i = 0; i < tree_.order.size(); ++i)
             own5_.push_back(node_block(std::span(patches_.corners).subspan(i, 1),
@@ -198,9 +198,12 @@ private:
         };
         if (between.empty()) return unoccluded();
         switch (sift({front_a, front_b}, between, snap_, scratch.in_shaft)) {
-        case Visibility::visible: return unoccluded();
-        case Visibility::hidden: return 0;
-        case Visibility::partial: break;
+        case Visibility::visible:
+            return unoccluded();
+        case Visibility::hidden:
+            return 0;
+        case Visibility::partial:
+            break;
         }
         ++scratch.counts.partial;
         return partial_exchange(front_a, n, front_b, m, between, scratch.in_shaft, snap_, unoccluded(),

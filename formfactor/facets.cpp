@@ -82,8 +82,8 @@ Facet facet_of(const Scene& scene, const Loop& loop, SurfaceId surface)
     for (std::size_t i = 0; i < loop.size(); ++i)
         if (turn_at(scene.vertices, loop, i, facet.normal) > 0) facet.corners.push_back(scene.vertices[loop[i]]);
     for (std::size_t k = 2; k < facet.corners.size(); ++k)
-        facet.area += 0.5 * glm::length(glm::cross(facet.corners[k - 1] - facet.corners[0],
-                                                   facet.corners[k] - facet.corners[0]));
+        facet.area +=
+            0.5 * glm::length(glm::cross(facet.corners[k - 1] - facet.corners[0], facet.corners[k] - facet.corners[0]));
     return facet;
 }
 

@@ -15,8 +15,8 @@ struct Facet {
     SurfaceId surface;
 };
 
-/// A surface cut into convex facets: its polygon itself where that is convex, else the scene's triangles over it, joined
-/// across their edges as long as the result stays convex [HertelMehlhorn83].
+/// A surface cut into convex facets: its polygon itself where that is convex, else the scene's triangles over it,
+/// joined across their edges as long as the result stays convex [HertelMehlhorn83].
 std::vector<Facet> facets_of(const Scene& scene, SurfaceId surface);
 
 /// All surfaces of an object, in their order.

@@ -19,11 +19,16 @@ FormFactorMatrix form_factor_matrix(const Scene& scene, const RayCaster& caster,
         const RowSampler sampler(scene, caster, mesh, locator, sources, options);
         return assemble_rows(sampler, mesh.patch_count(), monitor);
     }
-    case FormFactorMethod::hemicube: return hemicube_rows(scene, mesh, options, monitor);
-    case FormFactorMethod::quadrature: return quadrature_rows(scene, caster, mesh, options, monitor);
-    case FormFactorMethod::exact: return exact_rows(scene, caster, mesh, options, monitor);
-    case FormFactorMethod::closed_form: return exact_rows(scene, caster, mesh, options, monitor, false);
-    case FormFactorMethod::monte_carlo: break;
+    case FormFactorMethod::hemicube:
+        return hemicube_rows(scene, mesh, options, monitor);
+    case FormFactorMethod::quadrature:
+        return quadrature_rows(scene, caster, mesh, options, monitor);
+    case FormFactorMethod::exact:
+        return exact_rows(scene, caster, mesh, options, monitor);
+    case FormFactorMethod::closed_form:
+        return exact_rows(scene, caster, mesh, options, monitor, false);
+    case FormFactorMethod::monte_carlo:
+        break;
     }
     throw std::invalid_argument("monte-carlo is for pairs, not for whole matrices");
 }

@@ -32,9 +32,9 @@ struct FormFactorOptions {
     int rays = 512;        ///< per patch, 16 … 65536; rounded up to what the directions allow
     int shadow_rays = 16;  ///< per patch, shared among small sources by their factors (16 each at least), 4 … 4096
     double small_source =
-        0.2;  ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
-    int resolution = 256;    ///< hemicube: pixels along an edge, even, 4 … 4096
-    double tolerance = 0;    ///< quadrature, exact: error of a factor relative to the row; 0 = the method's own
+        0.2;               ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
+    int resolution = 256;  ///< hemicube: pixels along an edge, even, 4 … 4096
+    double tolerance = 0;  ///< quadrature, exact: error of a factor relative to the row; 0 = the method's own
     std::uint64_t seed = 1;
 };
 

@@ -106,8 +106,7 @@ private:
             Cell cell = std::move(open.back());
             open.pop_back();
             if (is_settled(cell)) continue;
-            if (cell.events.empty() || cell.area <= 3 * options_.tolerance ||
-                open.size() + pending_.size() > most) {
+            if (cell.events.empty() || cell.area <= 3 * options_.tolerance || open.size() + pending_.size() > most) {
                 pending_.push_back(std::move(cell));
                 continue;
             }

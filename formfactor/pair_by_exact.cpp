@@ -75,7 +75,8 @@ private:
         for (const double side : {1.0, -1.0}) {
             Side half{{}, cut_a ? a.normal : b.normal};
             keep_half(cut_a ? a.corners : b.corners, side * (cut_a ? extent_a : extent_b), half.corners);
-            if (half.corners.size() >= 3) add_half(cut_a ? half : a, cut_a ? b : half, between, work / 2, tolerance / 2);
+            if (half.corners.size() >= 3)
+                add_half(cut_a ? half : a, cut_a ? b : half, between, work / 2, tolerance / 2);
         }
     }
 

@@ -13,11 +13,11 @@ namespace patchlight {
 /// How one pair is computed. Defaults stay below a second for two polygons on one thread.
 struct PairOptions {
     FormFactorMethod method = FormFactorMethod::exact;
-    int origins = 4096;         ///< hemicube: hemicubes over `from`, in 16 groups, 1 … 65536
-    int resolution = 128;       ///< hemicube: pixels along an edge, even, 4 … 4096
-    std::size_t rays = 1 << 22; ///< hemisphere: in all, over all origins, 16 … 2^40
-    double tolerance = 0;       ///< of F; 0 = the method's own: exact 1e-10 within about a second's work, closed-form 1e-12,
-                                ///< quadrature 1e-4; given, exact goes on for a hundred times that
+    int origins = 4096;          ///< hemicube: hemicubes over `from`, in 16 groups, 1 … 65536
+    int resolution = 128;        ///< hemicube: pixels along an edge, even, 4 … 4096
+    std::size_t rays = 1 << 22;  ///< hemisphere: in all, over all origins, 16 … 2^40
+    double tolerance = 0;  ///< of F; 0 = the method's own: exact 1e-10 within about a second's work, closed-form 1e-12,
+                           ///< quadrature 1e-4; given, exact goes on for a hundred times that
     double relative_error = 0.005;  ///< monte-carlo: goes on until its standard error is below this part of F
     std::uint64_t seed = 1;
 };
@@ -40,8 +40,8 @@ PairFactor pair_factor(const Scene& scene, const RayCaster& caster, std::span<co
 
 /// The methods behind it, one a source file.
 PairFactor pair_by_closed_form(std::span<const Facet> from, std::span<const Facet> to, const PairOptions& options);
-/// The hemicube's error tells how much groups of origins differ, not what the pixels' raster makes wrong in all of them:
-/// below 0.1 % where `to` covers 40 pixels, and falling with the resolution.
+/// The hemicube's error tells how much groups of origins differ, not what the pixels' raster makes wrong in all of
+/// them: below 0.1 % where `to` covers 40 pixels, and falling with the resolution.
 PairFactor pair_by_hemicube(const Scene& scene, std::span<const Facet> from, std::span<const Facet> to,
                             const PairOptions& options);
 PairFactor pair_by_hemisphere(const Scene& scene, const RayCaster& caster, std::span<const Facet> from,

@@ -64,8 +64,7 @@ private:
         return 0.5 * glm::length(glm::cross(a, b)) * mean;
     }
 
-    double quartered(const Triangle& t, const Views& views, double coarse, double allowed, std::size_t level,
-                     int least)
+    double quartered(const Triangle& t, const Views& views, double coarse, double allowed, std::size_t level, int least)
     {
         const Vec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
         const std::array<Triangle, 4> quarters{{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {bc, ca, ab}}};
@@ -127,9 +126,7 @@ public:
             const Visibility visibility = narrow({first.corners, second.corners}, views, snap_, rest);
             if (visibility == Visibility::hidden) continue;
             const double part = unoccluded_exchange(first.corners, first.normal, second.corners, second.normal);
-            sum += visibility == Visibility::visible
-                       ? part
-                       : over(first, second, rest, part, allowed, cuts + 1);
+            sum += visibility == Visibility::visible ? part : over(first, second, rest, part, allowed, cuts + 1);
         }
         return sum;
     }
@@ -161,8 +158,8 @@ double partial_exchange(std::span<const Vec3> first, const Vec3& normal_first, s
     Views views;
     for (const std::uint32_t k : in_shaft) views.push_back(blockers[k].view());
     return PartialPair(snap, scratch)
-        .over({Polygon(first.begin(), first.end()), normal_first}, {Polygon(second.begin(), second.end()), normal_second},
-              views, free, allowed, 0);
+        .over({Polygon(first.begin(), first.end()), normal_first},
+              {Polygon(second.begin(), second.end()), normal_second}, views, free, allowed, 0);
 }
 
 }  // namespace patchlight

@@ -15,7 +15,7 @@ struct PartialScratch {
     VisibleScratch visible;
     std::vector<BlockerView> views;
     std::vector<std::array<std::vector<BlockerView>, 4>> quarters;  ///< the blockers of each, by level
-    std::size_t nodes = 0;  ///< points clipped at since the scratch was made
+    std::size_t nodes = 0;                                          ///< points clipped at since the scratch was made
 };
 
 /// A_1 F_12 of two small convex polygons partly hidden from each other, as a whole matrix needs it: the visible part of

@@ -14,15 +14,15 @@ namespace patchlight {
 /// these boxes of several surfaces.
 struct PatchTree {
     struct Node {
-        std::uint32_t first = 0, last = 0;  ///< range of `order`
+        std::uint32_t first = 0, last = 0;   ///< range of `order`
         std::int32_t left = -1, right = -1;  ///< children; −1 in a leaf
         SurfaceId surface;                   ///< invalid where several are in it
-        std::vector<Vec3> hull;  ///< corners of a rectangle in the surface's plane around all, or of a box
+        std::vector<Vec3> hull;              ///< corners of a rectangle in the surface's plane around all, or of a box
         bool is_leaf() const { return left < 0; }
     };
 
-    std::vector<PatchId> order;  ///< patches, those of a node together
-    std::vector<Node> nodes;     ///< the root is the last
+    std::vector<PatchId> order;         ///< patches, those of a node together
+    std::vector<Node> nodes;            ///< the root is the last
     std::vector<std::uint32_t> leaves;  ///< in the order of their patches
 
     const Node& root() const { return nodes.back(); }

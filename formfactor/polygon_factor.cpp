@@ -202,8 +202,7 @@ double distance_to_edges(const Vec3& p, const Points& polygon)
 /// around the small contour the same would cancel.
 bool is_small_beside(const Ball& small, double other_radius, const Points& other)
 {
-    return far_apart * small.radius < other_radius &&
-           far_apart * small.radius < distance_to_edges(small.centre, other);
+    return far_apart * small.radius < other_radius && far_apart * small.radius < distance_to_edges(small.centre, other);
 }
 
 double by_lambert(const Points& small, const Vec3& normal, const Points& other)

@@ -15,7 +15,7 @@ namespace patchlight {
 namespace {
 
 constexpr double default_tolerance = 1e-3;
-constexpr double look_for_backs = 1e-2;  // rows that miss more may see some
+constexpr double look_for_backs = 1e-2;       // rows that miss more may see some
 constexpr std::size_t most_nodes = 1U << 14;  // of a pair
 
 /// Exchanges of patch i with those after it.
@@ -40,8 +40,7 @@ class HalfRows {
 public:
     HalfRows(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const FormFactorOptions& options)
         : scene_(scene), caster_(caster), mesh_(mesh), options_(options), blockers_(scene)
-    {
-    }
+    {}
 
     HalfRow row(PatchId i, PairScratch& scratch) const
     {
@@ -66,8 +65,8 @@ private:
         const std::uint64_t key = (std::uint64_t{i.value} << 32) | j.value;
         const auto a = corners_of(mesh_, i), b = corners_of(mesh_, j);
         exchange.start(options_.seed, key);
-        const double unoccluded = exchange.add(a, scene_.surface(mesh_.surface(i)).frame.n, b,
-                                               scene_.surface(mesh_.surface(j)).frame.n);
+        const double unoccluded =
+            exchange.add(a, scene_.surface(mesh_.surface(i)).frame.n, b, scene_.surface(mesh_.surface(j)).frame.n);
         if (!(unoccluded > 0)) return 0;
         const double tolerance = options_.tolerance > 0 ? options_.tolerance : default_tolerance;
         OccludedOptions until;

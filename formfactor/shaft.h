@@ -25,11 +25,10 @@ enum class Visibility {
     partial   ///< cannot tell more
 };
 
-/// How one blocker stands in a shaft: `visible` when it was found to cross no segment by more than `snap` (m) of its rim,
-/// `hidden` when it crosses every segment. Conservative: `partial` may still be either.
-/// First the blocker's own plane; if that parts a from b, the sides on which all lines between corners pass the blocker's
-/// edges (linear in both ends, so that corners decide); else a few steps of a separating direction [ChungWang96] and
-/// the shaft's side planes.
+/// How one blocker stands in a shaft: `visible` when it was found to cross no segment by more than `snap` (m) of its
+/// rim, `hidden` when it crosses every segment. Conservative: `partial` may still be either. First the blocker's own
+/// plane; if that parts a from b, the sides on which all lines between corners pass the blocker's edges (linear in both
+/// ends, so that corners decide); else a few steps of a separating direction [ChungWang96] and the shaft's side planes.
 Visibility visibility_past(const Shaft& shaft, const BlockerView& blocker, double snap);
 
 }  // namespace patchlight

@@ -4,8 +4,8 @@
 
 namespace patchlight {
 
-/// A node of a quadrature rule over a triangle (a, b, c): the point a + b1 (b − a) + b2 (c − a), inside; the weights sum
-/// to 1, so that area × Σ weight × f is the integral.
+/// A node of a quadrature rule over a triangle (a, b, c): the point a + b1 (b − a) + b2 (c − a), inside; the weights
+/// sum to 1, so that area × Σ weight × f is the integral.
 struct TriangleNode {
     double b1 = 0, b2 = 0, weight = 0;
 };

@@ -11,8 +11,8 @@ namespace patchlight {
 /// Where a long computation stands.
 struct Progress {
     std::string_view stage;  ///< mesh, assemble, solve, gather, estimate
-    int cycle = 0;  ///< -1 = there are none
-    double fraction = 0;  ///< of this stage, 0 … 1
+    int cycle = 0;           ///< -1 = there are none
+    double fraction = 0;     ///< of this stage, 0 … 1
     std::size_t elements = 0;
     std::size_t rays = 0;  ///< traced so far in this stage
     double unshot = -1;    ///< share of the emitted power not yet shot; -1 = does not apply

@@ -11,8 +11,7 @@ Rgb gathered(const RadiositySystem& system, const Radiosity& B, std::size_t i)
 {
     const FormFactorMatrix& F = system.F;
     Rgb sum(0.0);
-    for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k)
-        sum += F.factors[k] * B[PatchId(F.columns[k])];
+    for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k) sum += F.factors[k] * B[PatchId(F.columns[k])];
     return system.E[PatchId(i)] + system.rho[PatchId(i)] * sum;
 }
 

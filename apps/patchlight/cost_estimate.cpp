@@ -49,8 +49,8 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     cost.elements = static_cast<std::size_t>(std::min(elements, 1e18));
     // Cycles grow geometrically: together about three times the last one; half as many vertices as elements.
     cost.rays = 3 * elements * (options.form_factors.rays + 0.5 * options.gather.rays);
-    cost.bytes = matrix_bytes(options.form_factors.method, cost.elements, options.form_factors) +
-                 elements * bytes_per_element;
+    cost.bytes =
+        matrix_bytes(options.form_factors.method, cost.elements, options.form_factors) + elements * bytes_per_element;
     return cost;
 }
 

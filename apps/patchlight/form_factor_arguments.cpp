@@ -70,9 +70,8 @@ void add_method_options(CLI::App& app, FormFactorTexts& t)
     t.bound.push_back({resolution, {Method::hemicube}, {Method::hemicube}});
     t.bound.push_back({rays, {Method::hemisphere}, {Method::hemisphere}});
     t.bound.push_back({directions, {}, {Method::hemisphere}});
-    t.bound.push_back({tolerance,
-                       {Method::closed_form, Method::quadrature, Method::exact},
-                       {Method::quadrature, Method::exact}});
+    t.bound.push_back(
+        {tolerance, {Method::closed_form, Method::quadrature, Method::exact}, {Method::quadrature, Method::exact}});
 }
 
 void add_matrix_options(CLI::App& app, FormFactorsCommand& c, FormFactorTexts& t)

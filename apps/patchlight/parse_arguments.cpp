@@ -19,8 +19,8 @@ constexpr const char* run_json = "print run.json instead of a summary";
 struct Texts {
     SceneTexts scene;
     std::string refine = "intensity", solver = "gauss-seidel", method = "hemisphere", indicator = "residual",
-                marking = "doerfler", directions = "stratified", order = "unshot-power", pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto",
-                cycle = "last", from, to, up = "0,1,0";
+                marking = "doerfler", directions = "stratified", order = "unshot-power", pictures = "all", size,
+                snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from, to, up = "0,1,0";
     double max_edge = 0, fov = 0;
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;
@@ -64,11 +64,11 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--solver", t.solver, "of the final solve")
         ->check(CLI::IsMember(words(solver_names())))
         ->capture_default_str();
-    t.tolerance_option = app.add_option("--tolerance", o.final.tolerance,
-                                        "of the final solve; progressive: 0.01 unless given")
-                             ->check(number_between(1e-12, 0.5))
-                             ->type_name("T")
-                             ->capture_default_str();
+    t.tolerance_option =
+        app.add_option("--tolerance", o.final.tolerance, "of the final solve; progressive: 0.01 unless given")
+            ->check(number_between(1e-12, 0.5))
+            ->type_name("T")
+            ->capture_default_str();
     app.add_option("--order", t.order, "what progressive shoots first")
         ->check(CLI::IsMember(words(order_names())))
         ->capture_default_str();
@@ -303,8 +303,8 @@ struct Parser {
                                                        "probe", "export",  "formfactors", "validate"};
         const std::string word = argc > 1 ? argv[1] : "";
         if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {
-            throw UsageError("usage", fmt::format("there is no command \"{}\"; there are {}", word,
-                                                  fmt::join(commands, ", ")));
+            throw UsageError("usage",
+                             fmt::format("there is no command \"{}\"; there are {}", word, fmt::join(commands, ", ")));
         }
     }
 

@@ -26,10 +26,12 @@ const ModeNames<FormFactorMethod>& form_factor_names()
 
 const ModeNames<FormFactorMethod>& form_factor_method_names()
 {
-    static const ModeNames<FormFactorMethod> names{
-        {"closed-form", FormFactorMethod::closed_form}, {"hemicube", FormFactorMethod::hemicube},
-        {"hemisphere", FormFactorMethod::hemisphere},   {"quadrature", FormFactorMethod::quadrature},
-        {"exact", FormFactorMethod::exact},             {"monte-carlo", FormFactorMethod::monte_carlo}};
+    static const ModeNames<FormFactorMethod> names{{"closed-form", FormFactorMethod::closed_form},
+                                                   {"hemicube", FormFactorMethod::hemicube},
+                                                   {"hemisphere", FormFactorMethod::hemisphere},
+                                                   {"quadrature", FormFactorMethod::quadrature},
+                                                   {"exact", FormFactorMethod::exact},
+                                                   {"monte-carlo", FormFactorMethod::monte_carlo}};
     return names;
 }
 
@@ -63,10 +65,8 @@ const ModeNames<ShootingOrder>& order_names()
 
 const ModeNames<Stage>& stage_names()
 {
-    static const ModeNames<Stage> names{{"uniform", Stage::uniform},
-                                        {"rough", Stage::rough},
-                                        {"adaptive", Stage::adaptive},
-                                        {"final", Stage::final}};
+    static const ModeNames<Stage> names{
+        {"uniform", Stage::uniform}, {"rough", Stage::rough}, {"adaptive", Stage::adaptive}, {"final", Stage::final}};
     return names;
 }
 
@@ -77,8 +77,11 @@ Json json_of(const Rgb& value)
 
 Json json_of(const View& view)
 {
-    return {{"name", view.name},     {"from", json_of(view.from)},          {"forward", json_of(view.forward)},
-            {"up", json_of(view.up)}, {"vertical_fov", view.vertical_fov}};
+    return {{"name", view.name},
+            {"from", json_of(view.from)},
+            {"forward", json_of(view.forward)},
+            {"up", json_of(view.up)},
+            {"vertical_fov", view.vertical_fov}};
 }
 
 namespace {
@@ -134,12 +137,9 @@ Json json_of(const SceneOptions& o)
     for (const auto& [name, value] : o.emitters) {
         emitters[name] = json_of(value);
     }
-    return {{"unit", o.unit},
-            {"max_reflectance", o.max_reflectance},
-            {"snap", o.snap},
-            {"all_two_sided", o.all_two_sided},
-            {"two_sided", o.two_sided},
-            {"emitters", emitters}};
+    return {{"unit", o.unit},           {"max_reflectance", o.max_reflectance},
+            {"snap", o.snap},           {"all_two_sided", o.all_two_sided},
+            {"two_sided", o.two_sided}, {"emitters", emitters}};
 }
 
 }  // namespace patchlight

@@ -69,7 +69,8 @@ Configuration random_configuration(std::uint64_t seed)
     if (random.uniform() < 0.5) {
         const std::uint32_t count = 1 + random.below(4);
         for (std::uint32_t k = 0; k < count; ++k)
-            c.blockers.push_back(strip(random, centre + 0.3 * random_vector(random), 0.2 + 2 * random.uniform(), width));
+            c.blockers.push_back(
+                strip(random, centre + 0.3 * random_vector(random), 0.2 + 2 * random.uniform(), width));
         return c;
     }
     // The two halves of a wall, apart by the slit's width.
@@ -167,9 +168,10 @@ int run(int configurations, int segments)
                     brute.standard_error);
     });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    std::printf("%d configurations, %d segments each, %.1f s: %d missed, %d invented; in %d the exact method sees light "
-                "where no segment passed\n",
-                configurations, segments, seconds, missed.load(), invented.load(), found_thin.load());
+    std::printf(
+        "%d configurations, %d segments each, %.1f s: %d missed, %d invented; in %d the exact method sees light "
+        "where no segment passed\n",
+        configurations, segments, seconds, missed.load(), invented.load(), found_thin.load());
     return missed + invented > 0 ? 1 : 0;
 }
 

@@ -44,8 +44,7 @@ struct Pose {
     Corners operator()(const Corners& corners) const
     {
         Corners result;
-        for (const Vec3& p : corners)
-            result.push_back(scale * (p.x * axes[0] + p.y * axes[1] + p.z * axes[2]) + move);
+        for (const Vec3& p : corners) result.push_back(scale * (p.x * axes[0] + p.y * axes[1] + p.z * axes[2]) + move);
         return result;
     }
 };
@@ -180,8 +179,8 @@ TEST(ExactPair, PiecesOfABlockerHideWhatItHides)
     EXPECT_NEAR(factor(opposed({rectangle(.2, .5, .3, .8, .4), rectangle(.4, .7, .3, .8, .4)})).value, whole, 1e-9);
 }
 
-/// The light that passes the slit [x0, x1] × everything at height z, from rectangles alone: at each place below, what is
-/// seen of the ceiling through it is a rectangle.
+/// The light that passes the slit [x0, x1] × everything at height z, from rectangles alone: at each place below, what
+/// is seen of the ceiling through it is a rectangle.
 double through_slit(double x0, double x1, double z)
 {
     constexpr int panels = 400;
@@ -233,8 +232,7 @@ TEST(ExactPair, AWallStandingOnTheReceiver)
     const Corners plate{{.5, 0, 0}, {.5, 1, 0}, {.5, 1, .5}, {.5, 0, .5}};
     const Corners before = rectangle(0, .5, 0, 1, 0), behind = rectangle(.5, 1, 0, 1, 0);
     const double whole = factor({floor, back, {plate}}).value;
-    const double parts =
-        0.5 * factor({before, back, {plate}}).value + 0.5 * factor({behind, back, {plate}}).value;
+    const double parts = 0.5 * factor({before, back, {plate}}).value + 0.5 * factor({behind, back, {plate}}).value;
     EXPECT_NEAR(whole, parts, 1e-9);
     EXPECT_EQ(factor({behind, back, {plate}}).value, polygon_factor(behind, back, 1e-13)) << "it stands behind";
 }
@@ -271,7 +269,8 @@ TEST(ExactPair, InvariantsOfRandomPairs)
     tbb::parallel_for(0, pairs, [&](int i) {
         RandomNumbers random(11, static_cast<std::uint64_t>(i));
         const auto any = [&] { return Vec3(random.uniform(), random.uniform(), random.uniform()) - 0.5; };
-        Case c{random_polygon(random, 0.5, any()), random_polygon(random, 0.5, any() + Vec3(0, 0, random.uniform())), {}};
+        Case c{
+            random_polygon(random, 0.5, any()), random_polygon(random, 0.5, any() + Vec3(0, 0, random.uniform())), {}};
         const double from_area = area_of(c.from), to_area = area_of(c.to);
         const double free = polygon_factor(c.from, c.to, 1e-9), back = polygon_factor(c.to, c.from, 1e-9);
         const double reciprocal = std::abs(from_area * free - to_area * back);

@@ -66,7 +66,8 @@ double factor(const FormFactorMatrix& F, std::size_t i, std::uint32_t j)
     return found != last && *found == j ? F.factors[static_cast<std::size_t>(found - F.columns.begin())] : 0;
 }
 
-// The bounds for an empty cube; at 500 patches the nodes are farther apart in the patches' own size than at 8,000.
+// The bounds for an empty cube; at 500 patches the nodes are farther apart in the patches' own size than at
+// 8,000.
 TEST(ExactRows, AnEmptyCubeCloses)
 {
     const Scene scene = cube();
@@ -131,7 +132,9 @@ TEST(ExactRows, AgreesWithExactPairs)
         const PatchId p(i);
         const auto c = mesh.corners(p);
         return Facet{{mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])},
-                     scene.surface(mesh.surface(p)).frame.n, mesh.area(p), mesh.surface(p)};
+                     scene.surface(mesh.surface(p)).frame.n,
+                     mesh.area(p),
+                     mesh.surface(p)};
     };
     RandomNumbers random(5, 5);
     PairOptions options;
@@ -139,7 +142,8 @@ TEST(ExactRows, AgreesWithExactPairs)
     double squares = 0;
     constexpr int pairs = 300;
     for (int n = 0; n < pairs; ++n) {
-        const std::size_t i = random.below(static_cast<std::uint32_t>(F.size())), j = random.below(static_cast<std::uint32_t>(F.size()));
+        const std::size_t i = random.below(static_cast<std::uint32_t>(F.size())),
+                          j = random.below(static_cast<std::uint32_t>(F.size()));
         if (mesh.surface(PatchId(i)) == mesh.surface(PatchId(j))) continue;
         const Facet a = facet(i), b = facet(j);
         const double exact = pair_by_exact(scene, std::span(&a, 1), std::span(&b, 1), options).value;
@@ -155,7 +159,8 @@ TEST(ExactRows, OccludedIsNeverMoreThanUnoccluded)
 {
     const Scene scene = read("cornell-box-closed.obj", 0.001);
     const PatchMesh mesh = mesh_of(scene, 300);
-    const FormFactorMatrix F = exact_rows(scene, RayCaster(scene), mesh, {}, {}), free = exact_rows(scene, RayCaster(scene), mesh, {}, {}, false);
+    const FormFactorMatrix F = exact_rows(scene, RayCaster(scene), mesh, {}, {}),
+                           free = exact_rows(scene, RayCaster(scene), mesh, {}, {}, false);
     for (std::size_t i = 0; i < F.size(); ++i)
         for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k)
             ASSERT_LE(F.factors[k], factor(free, i, F.columns[k]) * (1 + 1e-12));

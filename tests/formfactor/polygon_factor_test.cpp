@@ -71,8 +71,7 @@ public:
                                           random.uniform() - 0.5))),
           shift_(10 * random.uniform() - 5, 10 * random.uniform() - 5, 10 * random.uniform() - 5),
           scale_(std::pow(10, 6 * random.uniform() - 3))
-    {
-    }
+    {}
     Polygon operator()(Polygon polygon) const
     {
         for (Vec3& p : polygon) p = scale_ * (turn_ * p + shift_);

@@ -119,7 +119,8 @@ TEST(Blockers, NoneIsMissed)
         const Vec3 at = any(4);
         Blocker blocker;
         blocker.corners.assign({at + any(.6), at + any(.6), at + any(.6)});
-        blocker.normal = glm::normalize(glm::cross(blocker.corners[1] - blocker.corners[0], blocker.corners[2] - blocker.corners[0]));
+        blocker.normal = glm::normalize(
+            glm::cross(blocker.corners[1] - blocker.corners[0], blocker.corners[2] - blocker.corners[0]));
         blocker.offset = glm::dot(blocker.normal, blocker.corners[0]);
         all.push_back(blocker);
     }
