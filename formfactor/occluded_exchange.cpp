@@ -235,7 +235,8 @@ private:
     /// The rules of degree 5 and 8 where their difference is a cell's fair share of the tolerance, else one more.
     void apply_rules(Cell& cell)
     {
-        const double low = rule(cell, triangle_rule(5)), middle = rule(cell, triangle_rule(8));
+        const bool poor = options_.max_nodes < nodes_of_a_cell;  // then two cheap rules are what there is
+        const double low = rule(cell, triangle_rule(poor ? 2 : 5)), middle = rule(cell, triangle_rule(poor ? 5 : 8));
         cell.value = middle;
         cell.error = std::abs(middle - low);
         if (cell.error <= fair_share_ || nodes_ >= options_.max_nodes) return;

@@ -12,12 +12,12 @@ namespace {
 constexpr double default_tolerance = 1e-10;
 
 /// What an answer may cost by default, in blockers looked at from nodes: about a second.
-constexpr std::size_t default_work = 3'500'000;
+constexpr std::size_t default_work = 2'000'000;
 /// With a tolerance asked for.
-constexpr std::size_t patient_work = 100 * default_work;
+constexpr std::size_t patient_work = 200 * default_work;
 /// While more stand in between, cutting the polygons costs less than looking at all of them from every node.
 constexpr std::size_t many_blockers = 20;
-constexpr std::size_t fewest_nodes = 64;
+constexpr std::size_t fewest_nodes = 20, least_work = 2500;
 
 /// Looking past n blockers leaves the polygon in pieces that each of the later ones is held against.
 std::size_t work_of_a_node(std::size_t blockers)
@@ -59,7 +59,7 @@ private:
     /// Integrates, or first cuts the longer of both polygons in halves while many blockers stand in between.
     void add_part(const Side& a, const Side& b, const std::vector<Blocker>& between, std::size_t work, double tolerance)
     {
-        if (between.size() <= many_blockers || work < 2 * fewest_nodes * work_of_a_node(many_blockers)) {
+        if (between.size() <= many_blockers || work < least_work) {
             const std::size_t nodes = std::max(fewest_nodes, work / work_of_a_node(between.size()));
             const ExchangeEstimate part =
                 occluded_exchange(a.corners, a.normal, b.corners, b.normal, between, blockers_.snap(),

@@ -17,7 +17,7 @@ struct PairOptions {
     int resolution = 128;        ///< hemicube: pixels along an edge, even, 4 … 4096
     std::size_t rays = 1 << 22;  ///< hemisphere: in all, over all origins, 16 … 2^40
     double tolerance = 0;  ///< of F; 0 = the method's own: exact 1e-10 within about a second's work, closed-form 1e-12,
-                           ///< quadrature 1e-4; given, exact goes on for a hundred times that
+                           ///< quadrature 1e-4; given, exact goes on for 200 times that
     double relative_error = 0.005;  ///< monte-carlo: goes on until its standard error is below this part of F
     std::uint64_t seed = 1;
 };
