@@ -34,7 +34,7 @@ struct FormFactorOptions {
     double small_source =
         0.2;               ///< sources with a smaller unoccluded factor are seen by Lambert's formula; 0 = none are
     int resolution = 256;  ///< hemicube: pixels along an edge, even, 4 … 4096
-    double tolerance = 0;  ///< quadrature, exact: error of a factor relative to the row; 0 = the method's own
+    double tolerance = 0;  ///< quadrature: relative, of a row; exact: of a pair's larger factor; 0 = the method's own
     std::uint64_t seed = 1;
 };
 

@@ -57,7 +57,8 @@ public:
         : normal_(normal), target_(target), target_normal_(target_normal), blockers_(blockers), snap_(snap),
           options_(options)
     {
-        const Vec3 along = glm::normalize(outer[1] - outer[0]);
+        // Not the first edge: of what clipping leaves it may have no length.
+        const Vec3 along = glm::normalize(longest_extent(outer));
         plane_ = {outer[0], along, glm::cross(normal, along)};
         Cell whole;
         for (const Vec3& p : outer)

@@ -33,7 +33,8 @@ struct PairFactor {
 
 /// The fraction of the power leaving `from` (evenly from all its facets' fronts) that reaches the fronts of `to`, by
 /// the chosen method. All of the scene blocks but where light starts and ends, backs included; closed-form alone looks
-/// through everything. Reciprocal to rounding for closed-form, exact and quadrature.
+/// through everything. Reciprocal to rounding for closed-form, exact and quadrature; exact only to the error it tells
+/// where its work runs out.
 /// Throws std::invalid_argument when either side is empty.
 PairFactor pair_factor(const Scene& scene, const RayCaster& caster, std::span<const Facet> from,
                        std::span<const Facet> to, const PairOptions& options);
