@@ -40,6 +40,36 @@ void check_triangles(const PatchMeshArrays& arrays)
 
 }  // namespace
 
+namespace {
+
+std::vector<std::pair<std::size_t, std::size_t>> line_ranges(const PatchMeshArrays& arrays, std::size_t surfaces)
+{
+    std::vector<std::pair<std::size_t, std::size_t>> ranges(surfaces);
+    std::size_t i = 0;
+    const auto surface_of = [&](std::size_t k) { return arrays.vertex_surface[arrays.lines[k].left[0]].value; };
+    for (std::uint32_t s = 0; s < surfaces; ++s) {
+        ranges[s].first = i;
+        while (i < arrays.lines.size() && surface_of(i) == s) ++i;
+        ranges[s].second = i;
+    }
+    if (i != arrays.lines.size()) throw std::invalid_argument("patch mesh: lines out of order");
+    return ranges;
+}
+
+void check_lines(const TriMesh& mesh, const std::vector<MeshLine>& lines)
+{
+    const auto vertex = [&](std::uint32_t v) {
+        if (v >= mesh.n_vertices()) throw std::invalid_argument("patch mesh: a line names no vertex");
+        return OpenMesh::VertexHandle(static_cast<int>(v));
+    };
+    for (const MeshLine& line : lines)
+        for (const auto& [from, to] : {line.left, line.right})
+            if (!mesh.find_halfedge(vertex(from), vertex(to)).is_valid())
+                throw std::invalid_argument("patch mesh: a line isn't an edge");
+}
+
+}  // namespace
+
 PatchMesh::PatchMesh() : topology_(std::make_unique<Topology>()) {}
 PatchMesh::PatchMesh(PatchMesh&&) noexcept = default;
 PatchMesh& PatchMesh::operator=(PatchMesh&&) noexcept = default;
@@ -70,6 +100,8 @@ PatchMesh::PatchMesh(const Scene& scene, PatchMeshArrays arrays)
     }
     for (const auto v : mesh.vertices())
         if (!mesh.is_manifold(v)) throw std::invalid_argument("patch mesh: patches meet in a vertex only");
+    check_lines(mesh, arrays_.lines);
+    line_ranges_ = line_ranges(arrays_, scene.surfaces.size());
 }
 
 Vec3 PatchMesh::centroid(PatchId patch) const

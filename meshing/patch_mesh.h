@@ -2,10 +2,12 @@
 
 #include "meshing/fields.h"
 #include "meshing/scene.h"
+#include "meshing/surface_line.h"
 
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -31,21 +33,31 @@ struct IdRange {
     Iterator end() const { return {last}; }
 };
 
+/// An edge of the mesh that lies on a line. Across a contact line the light jumps: patches on its left have vertices of
+/// their own there, those on its right others at the same places. Elsewhere both sides have the same.
+struct MeshLine {
+    LineKind kind = LineKind::contact;
+    std::array<std::uint32_t, 2> left{}, right{};  ///< from its start to its end
+    bool beyond = false;  ///< not of the line itself: where the cut of a contact line goes on past its end
+};
+
 /// What a PatchMesh is made from. Vertices and patches are in order of their surface.
 struct PatchMeshArrays {
     std::vector<Vec3> positions;                          ///< metres, recentred
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the surface's front
     std::vector<SurfaceId> patch_surface;                 ///< non-decreasing
     std::vector<SurfaceId> vertex_surface;                ///< non-decreasing
+    std::vector<MeshLine> lines;                          ///< in order of their surface
 };
 
 /// The patch mesh: triangles over the scene's surfaces, conforming within a surface; across surfaces vertices
-/// need not match. A vertex belongs to one surface. Held in an OpenMesh triangle mesh; immutable.
+/// need not match. A vertex belongs to one surface. Along contact lines the mesh is cut open: the light has two values
+/// there, one a side. Held in an OpenMesh triangle mesh; immutable.
 class PatchMesh {
 public:
     PatchMesh();
     /// Throws std::invalid_argument when an index is past the end, surfaces are out of order, a triangle joins
-    /// vertices of two surfaces, has no area, or the triangles of a surface aren't a manifold.
+    /// vertices of two surfaces, has no area, the triangles of a surface aren't a manifold, or a line isn't their edge.
     PatchMesh(const Scene& scene, PatchMeshArrays arrays);
     PatchMesh(PatchMesh&&) noexcept;
     PatchMesh& operator=(PatchMesh&&) noexcept;
@@ -81,6 +93,12 @@ public:
     std::vector<PatchId> patches_around(VertexId vertex) const;
 
     const PatchMeshArrays& arrays() const { return arrays_; }
+    std::span<const MeshLine> lines() const { return arrays_.lines; }
+    std::span<const MeshLine> lines_of(SurfaceId surface) const
+    {
+        const auto [first, last] = line_ranges_[surface.value];
+        return {arrays_.lines.data() + first, last - first};
+    }
 
 private:
     struct Topology;
@@ -88,6 +106,7 @@ private:
     std::unique_ptr<Topology> topology_;
     std::vector<IdRange<PatchId>> patch_ranges_;
     std::vector<IdRange<VertexId>> vertex_ranges_;
+    std::vector<std::pair<std::size_t, std::size_t>> line_ranges_;
     std::vector<Vec2> plane_positions_;
     PatchField<double> areas_;
 };

@@ -22,19 +22,22 @@ using HalfedgeHandle = OpenMesh::HalfedgeHandle;
 /// The triangulation of one surface while it is being refined.
 class SurfaceRefinement {
 public:
-    SurfaceRefinement(const MeshingPlane& plane, const SurfaceTriangulation& triangulation, const TargetEdge& target,
-                      double min_angle)
-        : plane_(plane), target_(target), cosine_bound_(std::cos(min_angle * std::numbers::pi / 180))
+    SurfaceRefinement(const MeshingPlane& plane, const SurfaceTriangulation& triangulation) : plane_(plane)
     {
+        const auto handle = [](std::uint32_t v) { return VertexHandle(static_cast<int>(v)); };
         for (const Vec3& p : triangulation.positions) add_vertex(p);
-        for (const auto& t : triangulation.triangles) {
-            const auto handle = [](std::uint32_t v) { return VertexHandle(static_cast<int>(v)); };
-            mesh_.add_face(handle(t[0]), handle(t[1]), handle(t[2]));
+        for (const auto& t : triangulation.triangles) mesh_.add_face(handle(t[0]), handle(t[1]), handle(t[2]));
+        kinds_.resize(mesh_.n_edges(), no_line);
+        for (const auto& line : triangulation.lines) {
+            const HalfedgeHandle h = mesh_.find_halfedge(handle(line.vertices[0]), handle(line.vertices[1]));
+            kind(mesh_.edge_handle(h)) = static_cast<std::uint8_t>(line.kind);
         }
     }
 
-    void refine()
+    void refine(const TargetEdge& target, double min_angle)
     {
+        target_ = &target;
+        cosine_bound_ = std::cos(min_angle * std::numbers::pi / 180);
         for (const FaceHandle face : mesh_.faces()) work_.push_back(face);
         refine_sizes();
         // The rule in may_split() ends angles' demands; should rounding defeat it, this does.
@@ -45,6 +48,19 @@ public:
             work_.pop_front();
             while (too_long(face)) insert_circumcentre(face, 0);
             while (left > 0 && too_sharp(face) && insert_circumcentre(face, shortest_edge(face))) --left;
+        }
+    }
+
+    void bisect(std::span<const std::array<std::uint32_t, 2>> edges)
+    {
+        for (const auto& [a, b] : edges) {
+            const VertexHandle from(static_cast<int>(a)), to(static_cast<int>(b));
+            const HalfedgeHandle h = mesh_.find_halfedge(from, to);
+            if (h.is_valid())
+                bisect(h);
+            else
+                insert_middle(from, to);
+            work_.clear();
         }
     }
 
@@ -59,10 +75,22 @@ public:
             out.triangles.push_back({static_cast<std::uint32_t>(c[0].idx()), static_cast<std::uint32_t>(c[1].idx()),
                                      static_cast<std::uint32_t>(c[2].idx())});
         }
+        for (const EdgeHandle edge : mesh_.edges()) {
+            if (kind(edge) == no_line) continue;
+            const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
+            out.lines.push_back({{static_cast<std::uint32_t>(mesh_.from_vertex_handle(h).idx()),
+                                  static_cast<std::uint32_t>(mesh_.to_vertex_handle(h).idx())},
+                                 static_cast<LineKind>(kind(edge))});
+        }
         return out;
     }
 
 private:
+    static constexpr std::uint8_t no_line = 0xff;
+
+    std::uint8_t& kind(EdgeHandle edge) { return kinds_[static_cast<std::size_t>(edge.idx())]; }
+    std::uint8_t kind(EdgeHandle edge) const { return kinds_[static_cast<std::size_t>(edge.idx())]; }
+
     VertexHandle add_vertex(const Vec3& p)
     {
         flat_.push_back(plane_.to_plane(p));
@@ -100,7 +128,7 @@ private:
     {
         const auto c = corners(face);
         const Vec2 middle = plane_.diameter * (at(c[0]) + at(c[1]) + at(c[2])) / 3.0;
-        const double target = target_(middle) / plane_.diameter * (1 + 1e-9);
+        const double target = (*target_)(middle) / plane_.diameter * (1 + 1e-9);
         return length2(longest(face)) > target * target;
     }
 
@@ -113,12 +141,16 @@ private:
             const Vec2 apex = at(mesh_.from_vertex_handle(h));
             const Vec2 a = at(mesh_.to_vertex_handle(h)) - apex, b = at(mesh_.from_vertex_handle(before)) - apex;
             if (glm::dot(a, b) > cosine_bound_ * std::sqrt(glm::dot(a, a) * glm::dot(b, b)))
-                return !(on_border(h) && on_border(before));
+                return !(is_fixed(h) && is_fixed(before));
         }
         return false;
     }
 
-    bool on_border(HalfedgeHandle h) const { return mesh_.is_boundary(mesh_.edge_handle(h)); }
+    /// On the border or on a line: never flipped, never stepped over.
+    bool is_fixed(HalfedgeHandle h) const
+    {
+        return mesh_.is_boundary(mesh_.edge_handle(h)) || kind(mesh_.edge_handle(h)) != no_line;
+    }
 
     void refine_sizes()
     {
@@ -160,9 +192,9 @@ private:
             if (u.x * v.y - u.y * v.x < 1e-3 * length2(h)) touched = h;
         }
         if (touched.is_valid())
-            mesh_.split(mesh_.edge_handle(touched), vertex);
+            split(mesh_.edge_handle(touched), vertex);
         else
-            mesh_.split(target, vertex);
+            split(target, vertex);
         settle(vertex);
         return true;
     }
@@ -174,7 +206,7 @@ private:
         std::vector<FaceHandle> cavity{start};
         for (std::size_t i = 0; i < cavity.size(); ++i) {
             for (const auto h : mesh_.fh_range(cavity[i])) {
-                if (on_border(h)) {
+                if (is_fixed(h)) {
                     const Vec2 u = at(mesh_.from_vertex_handle(h)) - q, v = at(mesh_.to_vertex_handle(h)) - q;
                     if (glm::dot(u, v) <= 0) return h;
                     continue;
@@ -237,7 +269,7 @@ private:
                     way_out = h;
                 }
             }
-            if (!way_out.is_valid() || on_border(way_out)) return {face, way_out};
+            if (!way_out.is_valid() || is_fixed(way_out)) return {face, way_out};
             entered = mesh_.opposite_halfedge_handle(way_out);
             face = mesh_.face_handle(entered);
         }
@@ -245,10 +277,56 @@ private:
 
     void split_edge(HalfedgeHandle h)
     {
-        const VertexHandle middle =
-            add_vertex(0.5 * (mesh_.point(mesh_.from_vertex_handle(h)) + mesh_.point(mesh_.to_vertex_handle(h))));
-        mesh_.split(mesh_.edge_handle(h), middle);
+        const VertexHandle middle = add_vertex(middle_of(mesh_.from_vertex_handle(h), mesh_.to_vertex_handle(h)));
+        split(mesh_.edge_handle(h), middle);
         settle(middle);
+    }
+
+    Vec3 middle_of(VertexHandle a, VertexHandle b) const { return 0.5 * (mesh_.point(a) + mesh_.point(b)); }
+
+    /// Both halves stay on the line, if it was one.
+    void split(EdgeHandle edge, VertexHandle vertex)
+    {
+        const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
+        const VertexHandle a = mesh_.from_vertex_handle(h), b = mesh_.to_vertex_handle(h);
+        const std::uint8_t was = kind(edge);
+        mesh_.split(edge, vertex);
+        kinds_.resize(mesh_.n_edges(), no_line);
+        for (const VertexHandle end : {a, b}) kind(mesh_.edge_handle(mesh_.find_halfedge(vertex, end))) = was;
+    }
+
+    void split(FaceHandle face, VertexHandle vertex)
+    {
+        mesh_.split(face, vertex);
+        kinds_.resize(mesh_.n_edges(), no_line);
+    }
+
+    /// Unless what it leaves would be too thin.
+    void bisect(HalfedgeHandle h)
+    {
+        const VertexHandle a = mesh_.from_vertex_handle(h), b = mesh_.to_vertex_handle(h);
+        const Vec2 middle = plane_.to_plane(middle_of(a, b));
+        for (const HalfedgeHandle side : {h, mesh_.opposite_halfedge_handle(h)}) {
+            if (mesh_.is_boundary(side)) continue;
+            const Vec2& apex = at(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(side)));
+            const Vec2 &from = at(mesh_.from_vertex_handle(side)), &to = at(mesh_.to_vertex_handle(side));
+            if (!MeshingPlane::is_thick(from, middle, apex) || !MeshingPlane::is_thick(middle, to, apex)) return;
+        }
+        split_edge(h);
+    }
+
+    /// A vertex in the middle of two that had an edge once.
+    void insert_middle(VertexHandle a, VertexHandle b)
+    {
+        const Vec3 place = middle_of(a, b);
+        const Vec2 middle = plane_.to_plane(place);
+        const auto [face, blocking] = walk(mesh_.face_handle(*mesh_.cvoh_begin(a)), middle);
+        if (blocking.is_valid() || !face.is_valid()) return;
+        for (const auto h : mesh_.fh_range(face))
+            if (!MeshingPlane::is_thick(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), middle)) return;
+        const VertexHandle vertex = add_vertex(place);
+        split(face, vertex);
+        settle(vertex);
     }
 
     void settle(VertexHandle vertex)
@@ -265,7 +343,7 @@ private:
         while (!opposite.empty()) {
             const HalfedgeHandle h = opposite.back();
             opposite.pop_back();
-            if (on_border(h)) continue;
+            if (is_fixed(h)) continue;
             const HalfedgeHandle twin = mesh_.opposite_halfedge_handle(h);
             const VertexHandle far = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(twin));
             const VertexHandle a = mesh_.from_vertex_handle(h), b = mesh_.to_vertex_handle(h);
@@ -291,37 +369,33 @@ private:
         const auto point = [&](VertexHandle v) { return Kernel::Point_2(at(v).x, at(v).y); };
         const auto p = point(centre), q = point(a), r = point(b), s = point(far);
         return CGAL::side_of_oriented_circle(p, q, r, s) == CGAL::ON_POSITIVE_SIDE &&
-               CGAL::orientation(p, q, s) == CGAL::LEFT_TURN && CGAL::orientation(p, s, r) == CGAL::LEFT_TURN;
+               MeshingPlane::is_thick(at(centre), at(a), at(far)) && MeshingPlane::is_thick(at(centre), at(far), at(b));
     }
 
     MeshingPlane plane_;
-    const TargetEdge& target_;
-    double cosine_bound_;
+    const TargetEdge* target_ = nullptr;
+    double cosine_bound_ = 1;
     TriMesh mesh_;
+    std::vector<std::uint8_t> kinds_;  // of edges
     std::vector<Vec2> flat_;
     std::deque<FaceHandle> work_;
 };
 
 }  // namespace
 
-SurfaceTriangulation triangulation_of(const PatchMesh& mesh, SurfaceId surface)
-{
-    const auto vertices = mesh.vertices_of(surface);
-    SurfaceTriangulation result;
-    for (const VertexId v : vertices) result.positions.push_back(mesh.position(v));
-    for (const PatchId p : mesh.patches_of(surface)) {
-        const auto c = mesh.corners(p);
-        result.triangles.push_back(
-            {c[0].value - vertices.first, c[1].value - vertices.first, c[2].value - vertices.first});
-    }
-    return result;
-}
-
 SurfaceTriangulation refine_triangulation(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,
                                           const TargetEdge& target, double min_angle)
 {
-    SurfaceRefinement refinement(plane, triangulation, target, min_angle);
-    refinement.refine();
+    SurfaceRefinement refinement(plane, triangulation);
+    refinement.refine(target, min_angle);
+    return refinement.result();
+}
+
+SurfaceTriangulation bisect_edges(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,
+                                  std::span<const std::array<std::uint32_t, 2>> edges)
+{
+    SurfaceRefinement refinement(plane, triangulation);
+    refinement.bisect(edges);
     return refinement.result();
 }
 

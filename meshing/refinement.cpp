@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace patchlight {
 
@@ -30,13 +32,27 @@ PatchMesh join(const Scene& scene, const std::vector<SurfaceTriangulation>& piec
     PatchMeshArrays arrays;
     for (std::size_t s = 0; s < pieces.size(); ++s) {
         const auto first = static_cast<std::uint32_t>(arrays.positions.size());
-        arrays.positions.insert(arrays.positions.end(), pieces[s].positions.begin(), pieces[s].positions.end());
-        for (const auto& t : pieces[s].triangles)
-            arrays.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        const CutTriangulation piece = cut_contacts(scene.surfaces[s].frame, pieces[s]);
+        arrays.positions.insert(arrays.positions.end(), piece.positions.begin(), piece.positions.end());
+        for (const auto& t : piece.triangles) arrays.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        for (const MeshLine& line : piece.lines)
+            arrays.lines.push_back({line.kind,
+                                    {first + line.left[0], first + line.left[1]},
+                                    {first + line.right[0], first + line.right[1]},
+                                    line.beyond});
         arrays.vertex_surface.resize(arrays.positions.size(), SurfaceId(s));
         arrays.patch_surface.resize(arrays.triangles.size(), SurfaceId(s));
     }
     return PatchMesh(scene, std::move(arrays));
+}
+
+using LinesOfSurface = std::vector<std::vector<SurfaceLine>>;
+
+LinesOfSurface by_surface(const Scene& scene, std::span<const SurfaceLine> lines)
+{
+    LinesOfSurface result(scene.surfaces.size());
+    for (const SurfaceLine& line : lines) result[line.surface.value].push_back(line);
+    return result;
 }
 
 /// An angle bound costs a narrow strip as many triangles as it is longer than wide: those narrower than a
@@ -50,7 +66,8 @@ double angle_bound(const Scene& scene, const Surface& surface, double max_edge, 
     return 2 * surface.area / border < std::min(max_edge, border / 2) / 60 ? 0 : min_angle;
 }
 
-std::vector<SurfaceTriangulation> triangulate_all(const Scene& scene, double max_edge, double min_angle)
+std::vector<SurfaceTriangulation> triangulate_all(const Scene& scene, double max_edge, double min_angle,
+                                                  const LinesOfSurface& lines)
 {
     std::vector<SurfaceTriangulation> pieces(scene.surfaces.size());
     for_each_surface(scene, [&](SurfaceId s) {
@@ -58,9 +75,12 @@ std::vector<SurfaceTriangulation> triangulate_all(const Scene& scene, double max
         // Light is only followed on surfaces that reflect: others keep the fewest patches.
         if (!scene.material_of(s).reflects()) return;
         const Surface& surface = scene.surface(s);
+        const MeshingPlane plane{surface.frame, scene.diameter};
+        const bool has_lines = !lines[s.value].empty();
+        if (has_lines) pieces[s.value] = insert_lines(plane, pieces[s.value], lines[s.value]);
         pieces[s.value] = refine_triangulation(
-            {surface.frame, scene.diameter}, pieces[s.value], [&](const Vec2&) { return max_edge; },
-            angle_bound(scene, surface, max_edge, min_angle));
+            plane, pieces[s.value], [&](const Vec2&) { return max_edge; },
+            has_lines ? 0 : angle_bound(scene, surface, max_edge, min_angle));
     });
     return pieces;
 }
@@ -72,7 +92,8 @@ std::size_t count(const std::vector<SurfaceTriangulation>& pieces)
 }
 
 /// The uniform mesh with between 0.8 N and N triangles, or the nearest below N that was met.
-std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::size_t wanted, double min_angle)
+std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::size_t wanted, double min_angle,
+                                                       const LinesOfSurface& lines)
 {
     double area = 0;
     for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s)
@@ -84,7 +105,7 @@ std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::
     std::vector<SurfaceTriangulation> best;
     std::size_t best_count = 0;
     for (int attempt = 0; attempt < 14; ++attempt) {
-        auto pieces = triangulate_all(scene, h, min_angle);
+        auto pieces = triangulate_all(scene, h, min_angle, lines);
         const std::size_t found = count(pieces);
         if (best.empty() ||
             (found <= wanted ? best_count > wanted || found > best_count : best_count > wanted && found < best_count)) {
@@ -105,51 +126,70 @@ std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::
     return best;
 }
 
+/// The surfaces' triangulations with the first lines of the plan; those that got some aren't what they were.
+std::vector<SurfaceTriangulation> with_lines(const Scene& scene, const PatchMesh& mesh, const LinesOfSurface& lines)
+{
+    std::vector<SurfaceTriangulation> pieces(scene.surfaces.size());
+    for_each_surface(scene, [&](SurfaceId s) {
+        const bool anew = !lines[s.value].empty() && mesh.lines_of(s).empty();
+        pieces[s.value] = anew ? triangulate_polygon(scene, s) : triangulation_of(mesh, s);
+        if (!lines[s.value].empty())
+            pieces[s.value] = insert_lines({scene.surface(s).frame, scene.diameter}, pieces[s.value], lines[s.value]);
+    });
+    return pieces;
+}
+
+using SurfaceEdges = std::vector<std::vector<std::array<std::uint32_t, 2>>>;
+
+/// The edges to halve, by surface, as many of the first as there is room for: each makes two triangles more at most.
+SurfaceEdges edges_to_bisect(const PatchMesh& mesh, const RefinementPlan& plan, const LinesOfSurface& lines,
+                             const std::vector<SurfaceTriangulation>& pieces, std::size_t room)
+{
+    SurfaceEdges edges(pieces.size());
+    std::vector<std::set<std::pair<std::uint32_t, std::uint32_t>>> chosen(pieces.size());
+    for (const auto& [patch, k] : plan.bisections) {
+        const SurfaceId s = mesh.surface(patch);
+        if (!lines[s.value].empty()) continue;
+        const auto& corners = pieces[s.value].triangles[patch.value - mesh.patches_of(s).first];
+        const std::uint32_t a = corners[k], b = corners[(k + 1U) % 3];
+        if (room < 2) break;
+        if (!chosen[s.value].insert(std::minmax(a, b)).second) continue;
+        edges[s.value].push_back({a, b});
+        room -= 2;
+    }
+    return edges;
+}
+
 }  // namespace
 
-PatchMesh triangulate(const Scene& scene, const MeshingOptions& options)
+PatchMesh triangulate(const Scene& scene, const MeshingOptions& options, std::span<const SurfaceLine> lines)
 {
+    const LinesOfSurface lines_of = by_surface(scene, lines);
     if (options.max_elements > 0 && options.max_edge <= 0)
-        return join(scene, triangulate_to_count(scene, options.max_elements, options.min_angle));
+        return join(scene, triangulate_to_count(scene, options.max_elements, options.min_angle, lines_of));
     const double max_edge = options.max_edge > 0 ? options.max_edge : scene.diameter / 12;
-    return join(scene, triangulate_all(scene, max_edge, options.min_angle));
+    return join(scene, triangulate_all(scene, max_edge, options.min_angle, lines_of));
 }
 
 Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options)
 {
-    const PatchLocator locator(mesh);
-    std::vector<SurfaceTriangulation> pieces(scene.surfaces.size());
-    std::size_t honoured = plan.splits.size();
-    for (;;) {
-        std::vector<double> target(mesh.patch_count(), std::numeric_limits<double>::infinity());
-        std::vector<std::uint8_t> touched(scene.surfaces.size(), 0);
-        std::vector<double> shortest(scene.surfaces.size(), std::numeric_limits<double>::infinity());
-        for (std::size_t i = 0; i < honoured; ++i) {
-            const auto& split = plan.splits[i];
-            target[split.patch.value] = std::min(target[split.patch.value], split.target_edge);
-            const std::uint32_t surface = mesh.surface(split.patch).value;
-            touched[surface] = 1;
-            shortest[surface] = std::min(shortest[surface], split.target_edge);
-        }
-        for_each_surface(scene, [&](SurfaceId s) {
-            pieces[s.value] = triangulation_of(mesh, s);
-            if (touched[s.value] == 0) return;
-            const TargetEdge target_at = [&](const Vec2& q) {
-                return target[locator.locate(s, static_cast<float>(q.x), static_cast<float>(q.y)).value];
-            };
-            const Surface& surface = scene.surface(s);
-            pieces[s.value] = refine_triangulation({surface.frame, scene.diameter}, pieces[s.value], target_at,
-                                                   angle_bound(scene, surface, shortest[s.value], options.min_angle));
-        });
-        const std::size_t found = count(pieces);
-        if (options.max_elements == 0 || found <= options.max_elements || honoured == 0) break;
-        const double room = static_cast<double>(options.max_elements) - static_cast<double>(mesh.patch_count());
-        const double growth = static_cast<double>(found - mesh.patch_count());
-        const double share = std::clamp(room / growth, 0.0, 1.0);
-        honoured = std::min(honoured - 1, static_cast<std::size_t>(share * static_cast<double>(honoured)));
+    const std::size_t most = options.max_elements > 0 ? std::max(options.max_elements, mesh.patch_count())
+                                                      : std::numeric_limits<std::size_t>::max();
+    std::span<const SurfaceLine> lines = plan.lines;
+    LinesOfSurface lines_of = by_surface(scene, lines);
+    std::vector<SurfaceTriangulation> pieces = with_lines(scene, mesh, lines_of);
+    while (count(pieces) > most && !lines.empty()) {
+        lines = lines.first(lines.size() * 3 / 4);
+        lines_of = by_surface(scene, lines);
+        pieces = with_lines(scene, mesh, lines_of);
     }
+    const SurfaceEdges edges = edges_to_bisect(mesh, plan, lines_of, pieces, most - std::min(most, count(pieces)));
+    for_each_surface(scene, [&](SurfaceId s) {
+        if (!edges[s.value].empty())
+            pieces[s.value] = bisect_edges({scene.surface(s).frame, scene.diameter}, pieces[s.value], edges[s.value]);
+    });
     PatchMesh refined = join(scene, pieces);
-    PatchTransfer transfer = overlap(mesh, locator, refined);
+    PatchTransfer transfer = overlap(mesh, PatchLocator(mesh), refined);
     return {std::move(refined), std::move(transfer)};
 }
 

@@ -11,20 +11,22 @@ namespace patchlight {
 
 /// How surfaces are cut into patches.
 struct MeshingOptions {
-    double max_edge = 0;           ///< longest edge of the uniform mesh, m; 0 = a twelfth of the scene's diameter
-    double min_angle = 20;         ///< degrees, 0 … 20.7; angles between the input's own edges are exempt
-    std::size_t max_elements = 0;  ///< budget of triangles, 0 = none; refine() never returns more
+    double max_edge = 0;    ///< longest edge of the uniform mesh, m; 0 = a twelfth of the scene's diameter
+    double min_angle = 20;  ///< degrees, 0 … 20.7; angles between the input's own edges are exempt
+    std::size_t max_elements =
+        0;  ///< budget of triangles, 0 = none; refine() never returns more than it, or than it got
 };
 
 /// What marking asks of refinement: plain data. Empty = nothing left to do.
 struct RefinementPlan {
-    struct Split {
+    struct Bisection {
         PatchId patch;
-        double target_edge = 0;  ///< m: the patches that cover it shall have no longer edge
+        std::uint8_t edge = 0;  ///< from corner k to corner k + 1
     };
-    std::vector<Split> splits;  ///< the most wanted first
+    std::vector<SurfaceLine> lines;     ///< to become edges, the most wanted first
+    std::vector<Bisection> bisections;  ///< edges to halve, the most wanted first
 
-    bool empty() const { return splits.empty(); }
+    bool empty() const { return lines.empty() && bisections.empty(); }
 };
 
 /// For each new patch the old patches that it covers. Delaunay refinement isn't nested: a new patch may lie
@@ -47,12 +49,14 @@ struct Refinement {
 /// meshing until no edge is longer than `max_edge` and no angle smaller than `min_angle`. With `max_elements`
 /// and no max_edge: the longest edge that gives between 0.8 N and N triangles (as near below N as the input's
 /// own edges permit). A surface narrower than a sixtieth of the longest edge has no angle
-/// bound. Surfaces are meshed independently, on all threads; the result does not depend on their number.
-PatchMesh triangulate(const Scene& scene, const MeshingOptions& options);
+/// bound. Surfaces are meshed independently, on all threads; the result does not depend on their number. With lines,
+/// these are edges of the mesh, and surfaces that hold some have no angle bound.
+PatchMesh triangulate(const Scene& scene, const MeshingOptions& options, std::span<const SurfaceLine> lines = {});
 
-/// Refines what the plan asks for, and its neighbours as far as the shape bound needs it, by Delaunay refinement of
-/// each surface. Old vertices stay. An empty plan gives the same mesh. When the budget doesn't reach, only the
-/// plan's first splits are honoured.
+/// Does what the plan asks for, surface by surface; all stays constrained Delaunay, and no angle is bounded. Old
+/// vertices stay, but for surfaces that get their first lines: these are meshed anew, of their outline and the lines
+/// alone; where there are new lines, nothing is bisected yet. An empty plan gives the same mesh. When the budget
+/// doesn't reach, only the first lines and bisections are honoured.
 Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
 
 /// Which old patches each new one covers, by clipping them against each other in their surface's plane.

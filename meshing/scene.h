@@ -13,8 +13,8 @@ namespace patchlight {
 /// A diffuse material, as the light sees it.
 struct Material {
     std::string name;
-    Rgb reflectance{0.5};   ///< ρ, in [0, 1)
-    Rgb emission{0.0};      ///< exitance E, W/m²
+    Rgb reflectance{0.5};    ///< ρ, in [0, 1)
+    Rgb emission{0.0};       ///< exitance E, W/m²
     bool two_sided = false;  ///< a two-sided polygon is two surfaces back to back; both emit and reflect
 
     bool emits() const { return emission.r > 0 || emission.g > 0 || emission.b > 0; }
@@ -56,7 +56,7 @@ struct SceneTriangle {
 /// A camera.
 struct View {
     std::string name;
-    Vec3 from{0.0};      ///< in the scene's recentred metres
+    Vec3 from{0.0};          ///< in the scene's recentred metres
     Vec3 forward{0, 0, -1};  ///< unit
     Vec3 up{0, 1, 0};
     double vertical_fov = 39.3;  ///< degrees
@@ -66,7 +66,7 @@ struct View {
 /// What is solved: immutable once read. Coordinates are metres relative to `center`.
 struct Scene {
     std::string name;
-    Vec3 center{0.0};    ///< metres; file coordinates × unit = vertices + center
+    Vec3 center{0.0};     ///< metres; file coordinates × unit = vertices + center
     double diameter = 0;  ///< of the bounding box, metres
     double unit = 1;      ///< metres per unit of the file
     bool closed = false;  ///< no light that surfaces emit can escape

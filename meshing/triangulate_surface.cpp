@@ -1,111 +1,263 @@
+#include "meshing/arrange_lines.h"
 #include "meshing/surface_triangulation.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include <deque>
+#include <algorithm>
 #include <map>
+#include <set>
 
 namespace patchlight {
 
 namespace {
 
+constexpr std::uint32_t unnamed = 0xffffffffU;
+
+struct VertexInfo {
+    std::uint32_t point = unnamed;
+};
+struct FaceInfo {
+    bool inside = false;
+};
+
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_2;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;  // index into Scene::vertices
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexInfo, Kernel>;
 using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<int, Kernel, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Triangulation =
+    CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Delaunay =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                CGAL::Exact_predicates_tag>;
+using Triangulation = CGAL::Constrained_triangulation_plus_2<Delaunay>;
 using FaceHandle = Triangulation::Face_handle;
 using VertexHandle = Triangulation::Vertex_handle;
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-constexpr int unknown = -1;
-
-Triangulation constrained(const Scene& scene, const Surface& surface)
-{
-    const MeshingPlane plane{surface.frame, scene.diameter};
-    Triangulation cdt;
-    for (const auto& loop : surface.loops) {
+/// The constrained Delaunay triangulation of an arrangement.
+class ArrangementTriangulation {
+public:
+    explicit ArrangementTriangulation(LineArrangement lines) : lines_(std::move(lines))
+    {
         std::vector<VertexHandle> handles;
-        for (const std::uint32_t index : loop) {
-            const Vec2 q = plane.to_plane(scene.vertices[index]);
-            const VertexHandle v = cdt.insert(Point(q.x, q.y));
-            v->info() = index;
+        FaceHandle near;
+        for (std::uint32_t i = 0; i < lines_.points.size(); ++i) {
+            const VertexHandle v = cdt_.insert(Point(lines_.points[i].x, lines_.points[i].y), near);
+            if (v->info().point == unnamed) v->info().point = i;
             handles.push_back(v);
+            near = v->face();
         }
-        for (std::size_t i = 0; i < handles.size(); ++i)
-            if (handles[i] != handles[(i + 1) % handles.size()])
-                cdt.insert_constraint(handles[i], handles[(i + 1) % handles.size()]);
+        std::vector<std::pair<const PlanePiece*, Triangulation::Constraint_id>> constraints;
+        for (const PlanePiece& piece : lines_.pieces) {
+            const VertexHandle a = handles[piece.points[0]], b = handles[piece.points[1]];
+            if (a != b) constraints.emplace_back(&piece, cdt_.insert_constraint(a, b));
+        }
+        // Pieces that rounding lets cross after all get a point there.
+        for (const VertexHandle v : cdt_.finite_vertex_handles()) {
+            if (v->info().point != unnamed) continue;
+            v->info().point = static_cast<std::uint32_t>(lines_.points.size());
+            lines_.points.emplace_back(v->point().x(), v->point().y());
+        }
+        for (const auto& [piece, id] : constraints) name_edges(*piece, handles[piece->points[0]], id);
+        mark_inside();
     }
-    return cdt;
-}
 
-/// Marks the faces that an odd number of constraints separates from the outside.
-void mark_domain(Triangulation& cdt)
-{
-    for (const FaceHandle face : cdt.all_face_handles()) face->info() = unknown;
-    std::deque<std::pair<FaceHandle, int>> work{{cdt.infinite_face(), 0}};
-    while (!work.empty()) {
-        const auto [face, level] = work.front();
-        work.pop_front();
-        if (face->info() != unknown) continue;
-        face->info() = level;
-        for (int i = 0; i < 3; ++i) {
-            const bool crossing = cdt.is_constrained({face, i});
-            // Nearer levels first: a face belongs to the lowest level it is reached with.
-            if (crossing)
-                work.emplace_back(face->neighbor(i), level + 1);
+    /// Positions aren't set: the triangulation's vertices are points, as `points` tells.
+    SurfaceTriangulation extract(std::vector<std::uint32_t>& points) const;
+
+    const std::vector<Vec2>& points() const { return lines_.points; }
+
+private:
+    void name_edges(const PlanePiece& piece, VertexHandle start, Triangulation::Constraint_id id)
+    {
+        std::vector<std::uint32_t> chain;
+        for (auto v = cdt_.vertices_in_constraint_begin(id); v != cdt_.vertices_in_constraint_end(id); ++v)
+            chain.push_back((*v)->info().point);
+        if (chain.front() != start->info().point) std::ranges::reverse(chain);
+        for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+            if (piece.border)
+                border_.emplace(chain[k], chain[k + 1]);
             else
-                work.emplace_front(face->neighbor(i), level);
+                line_edges_.push_back({{chain[k], chain[k + 1]}, piece.kind});
         }
     }
-}
 
-bool in_domain(FaceHandle face)
-{
-    return face->info() % 2 == 1;
-}
+    /// Whether an edge is the border's, either way round.
+    bool on_border(VertexHandle a, VertexHandle b) const { return runs(a, b) || runs(b, a); }
+    bool runs(VertexHandle a, VertexHandle b) const { return border_.contains({a->info().point, b->info().point}); }
 
-SurfaceTriangulation extract(const Scene& scene, const Triangulation& cdt)
-{
-    SurfaceTriangulation result;
-    // A vertex where loops touch has several fans of patches: each fan gets a vertex of its own, so that the
-    // patches are a manifold. Keyed by the first face of the fan, counter-clockwise.
-    std::map<std::pair<VertexHandle, FaceHandle>, std::uint32_t> index_of;
-    const auto first_of_fan = [&](VertexHandle v, FaceHandle face) {
+    /// From the border inwards, which is on its left.
+    void mark_inside()
+    {
+        std::vector<FaceHandle> work;
+        for (const FaceHandle face : cdt_.finite_face_handles())
+            for (int i = 0; i < 3; ++i)
+                if (runs(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i)))) work.push_back(face);
+        while (!work.empty()) {
+            const FaceHandle face = work.back();
+            work.pop_back();
+            if (face->info().inside || cdt_.is_infinite(face)) continue;
+            face->info().inside = true;
+            for (int i = 0; i < 3; ++i)
+                if (!on_border(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i))))
+                    work.push_back(face->neighbor(i));
+        }
+    }
+
+    /// The first face, clockwise, of those round a vertex that hang together inside; any, but always the same, when
+    /// they go all the way round.
+    FaceHandle first_of_fan(VertexHandle v, FaceHandle face) const
+    {
         const FaceHandle start = face;
         for (;;) {
-            const FaceHandle before = face->neighbor(Triangulation::ccw(face->index(v)));
-            if (!in_domain(before) || before == start) return before == start ? v->face() : face;
+            const int i = face->index(v);
+            const FaceHandle before = face->neighbor(Triangulation::cw(i));
+            if (!before->info().inside || on_border(v, face->vertex(Triangulation::ccw(i)))) return face;
+            if (before == start) return v->face();
             face = before;
         }
-    };
-    for (const FaceHandle face : cdt.finite_face_handles()) {
-        if (!in_domain(face)) continue;
+    }
+
+    LineArrangement lines_;
+    Triangulation cdt_;
+    std::set<Pair> border_;
+    std::vector<SurfaceTriangulation::Line> line_edges_;  // between points
+};
+
+SurfaceTriangulation ArrangementTriangulation::extract(std::vector<std::uint32_t>& points) const
+{
+    SurfaceTriangulation result;
+    points.clear();
+    // A vertex where the border touches itself has several fans of patches: each gets a vertex of its own, so that the
+    // patches are a manifold. The copies of a point stay beside each other.
+    std::map<std::pair<VertexHandle, FaceHandle>, std::uint32_t> index_of;
+    std::map<Pair, std::array<std::uint32_t, 2>> edges;  // between points, to a triangle's vertices
+    for (const FaceHandle face : cdt_.finite_face_handles()) {
+        if (!face->info().inside) continue;
         std::array<std::uint32_t, 3> triangle{};
         for (int k = 0; k < 3; ++k) {
             const VertexHandle v = face->vertex(k);
             const auto [entry, added] =
-                index_of.try_emplace({v, first_of_fan(v, face)}, static_cast<std::uint32_t>(result.positions.size()));
-            if (added) result.positions.push_back(scene.vertices[v->info()]);
+                index_of.try_emplace({v, first_of_fan(v, face)}, static_cast<std::uint32_t>(points.size()));
+            if (added) points.push_back(v->info().point);
             triangle[static_cast<std::size_t>(k)] = entry->second;
         }
         result.triangles.push_back(triangle);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+            edges[{points[a], points[b]}] = {a, b};
+        }
+    }
+    for (const auto& line : line_edges_) {
+        const auto forward = edges.find({line.vertices[0], line.vertices[1]});
+        const bool inside = edges.contains({line.vertices[1], line.vertices[0]});
+        if (forward != edges.end() && inside) result.lines.push_back({forward->second, line.kind});
     }
     return result;
+}
+
+/// The border of a triangulation, which are the edges of one triangle, and its lines.
+std::vector<PlanePiece> pieces_of(const SurfaceTriangulation& triangulation)
+{
+    std::set<Pair> edges;
+    for (const auto& t : triangulation.triangles)
+        for (std::size_t k = 0; k < 3; ++k) edges.emplace(t[k], t[(k + 1) % 3]);
+    std::vector<PlanePiece> pieces;
+    for (const auto& [from, to] : edges)
+        if (!edges.contains({to, from})) pieces.push_back({{from, to}, LineKind::contact, true, 0});
+    for (const auto& line : triangulation.lines) pieces.push_back({line.vertices, line.kind, false, 0});
+    return pieces;
+}
+
+/// Where the points are: old ones stay, those on the border lie on its edges, the rest in the plane.
+std::vector<Vec3> places_of(const MeshingPlane& plane, const SurfaceTriangulation& old,
+                            const std::vector<PlanePiece>& old_pieces, const LineArrangement& lines)
+{
+    std::vector<Vec3> places = old.positions;
+    for (std::size_t i = places.size(); i < lines.points.size(); ++i) places.push_back(plane.lift(lines.points[i]));
+    for (const PlanePiece& piece : lines.pieces) {
+        if (!piece.border) continue;
+        const auto& ends = old_pieces[piece.origin].points;
+        const Vec2 &a = lines.points[ends[0]], &b = lines.points[ends[1]];
+        const Vec3 &p = old.positions[ends[0]], &q = old.positions[ends[1]];
+        for (const std::uint32_t point : piece.points)
+            if (point >= old.positions.size())
+                places[point] = p + glm::dot(lines.points[point] - a, b - a) / glm::dot(b - a, b - a) * (q - p);
+    }
+    return places;
+}
+
+SurfaceTriangulation with_lines(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,
+                                std::span<const SurfaceLine> lines, double merge)
+{
+    LineArrangement given;
+    for (const Vec3& p : triangulation.positions) given.points.push_back(plane.to_plane(p));
+    given.pieces = pieces_of(triangulation);
+    const std::vector<PlanePiece> old_pieces = given.pieces;
+    LineArrangement arranged = arrange_lines(std::move(given), lines, merge);
+    const std::vector<Vec3> places = places_of(plane, triangulation, old_pieces, arranged);
+    const ArrangementTriangulation inserted(std::move(arranged));
+    std::vector<std::uint32_t> points;
+    SurfaceTriangulation result = inserted.extract(points);
+    for (const std::uint32_t point : points)
+        result.positions.push_back(point < places.size() ? places[point] : plane.lift(inserted.points()[point]));
+    return result;
+}
+
+/// No triangle without area.
+bool is_sound(const MeshingPlane& plane, const SurfaceTriangulation& triangulation)
+{
+    return std::ranges::all_of(triangulation.triangles, [&](const auto& t) {
+        const auto at = [&](std::size_t k) {
+            return plane.frame.to_plane(triangulation.positions[t[k]]) / plane.diameter;
+        };
+        return MeshingPlane::is_thick(at(0), at(1), at(2));
+    });
 }
 
 }  // namespace
 
 SurfaceTriangulation triangulate_polygon(const Scene& scene, SurfaceId surface)
 {
-    Triangulation cdt = constrained(scene, scene.surface(surface));
-    mark_domain(cdt);
-    return extract(scene, cdt);
+    const MeshingPlane plane{scene.surface(surface).frame, scene.diameter};
+    LineArrangement outline;
+    std::vector<Vec3> places;
+    std::map<std::uint32_t, std::uint32_t> point_of;
+    for (const auto& loop : scene.surface(surface).loops)
+        for (const std::uint32_t vertex : loop)
+            if (point_of.try_emplace(vertex, static_cast<std::uint32_t>(places.size())).second) {
+                places.push_back(scene.vertices[vertex]);
+                outline.points.push_back(plane.to_plane(places.back()));
+            }
+    for (const auto& loop : scene.surface(surface).loops)
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            outline.pieces.push_back(
+                {{point_of[loop[i]], point_of[loop[(i + 1) % loop.size()]]}, LineKind::contact, true, 0});
+    const ArrangementTriangulation triangulation(std::move(outline));
+    std::vector<std::uint32_t> points;
+    SurfaceTriangulation result = triangulation.extract(points);
+    for (const std::uint32_t point : points)
+        result.positions.push_back(point < places.size() ? places[point] : plane.lift(triangulation.points()[point]));
+    return result;
+}
+
+SurfaceTriangulation insert_lines(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,
+                                  std::span<const SurfaceLine> lines, double merge)
+{
+    std::vector<SurfaceLine> scaled(lines.begin(), lines.end());
+    for (SurfaceLine& line : scaled) {
+        line.start /= plane.diameter;
+        line.end /= plane.diameter;
+    }
+    // Lines that bend toward one another round after round can leave a triangle no thicker than rounding.
+    for (int attempt = 0; attempt < 3; ++attempt, merge *= 8) {
+        SurfaceTriangulation result = with_lines(plane, triangulation, scaled, merge);
+        if (is_sound(plane, result)) return result;
+    }
+    return triangulation;
 }
 
 }  // namespace patchlight
