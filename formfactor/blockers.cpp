@@ -48,7 +48,7 @@ std::vector<Blocker> blockers_of(const Scene& scene)
     std::vector<std::pair<std::vector<Vec3>, Blocker>> all;
     for (const Facet& facet : facets_of(scene)) {
         Blocker blocker{Polygon(facet.corners.begin(), facet.corners.end()), facet.normal,
-                        glm::dot(facet.normal, facet.corners[0])};
+                        glm::dot(facet.normal, facet.corners[0]), 0};
         std::vector<Vec3> key = sorted_corners(blocker);
         all.emplace_back(std::move(key), std::move(blocker));
     }
@@ -69,6 +69,7 @@ bool clipped(const Blocker& blocker, const Vec3& normal_a, double offset_a, cons
     keep_front(half, normal_b, offset_b, snap, result.corners);
     result.normal = blocker.normal;
     result.offset = blocker.offset;
+    result.index = blocker.index;
     return result.corners.size() >= 3;
 }
 
@@ -90,6 +91,7 @@ Blockers::Blockers(std::vector<Blocker> blockers, double size)
 {
     std::vector<Entry> entries;
     for (std::uint32_t k = 0; k < blockers_.size(); ++k) {
+        blockers_[k].index = k;
         Bounds bounds;
         bounds.add(blockers_[k].corners);
         entries.emplace_back(bounds.box(0), k);

@@ -4,6 +4,7 @@
 #include "formfactor/facets.h"
 #include "formfactor/shaft.h"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,9 +13,10 @@ namespace patchlight {
 
 /// A convex polygon that may stand in the way, from both sides.
 struct Blocker {
-    Polygon corners;    ///< counter-clockwise seen against the normal
-    Vec3 normal{0.0};   ///< unit
-    double offset = 0;  ///< dot(normal, corner)
+    Polygon corners;          ///< counter-clockwise seen against the normal
+    Vec3 normal{0.0};         ///< unit
+    double offset = 0;        ///< dot(normal, corner)
+    std::uint32_t index = 0;  ///< in Blockers::all(), also of what is left after clipping
 
     BlockerView view() const { return {corners, normal, offset}; }
 };
