@@ -193,6 +193,14 @@ Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPla
     return {std::move(refined), std::move(transfer)};
 }
 
+Refinement remesh(const Scene& scene, const PatchMesh& mesh, std::span<const SurfaceLine> lines,
+                  const MeshingOptions& options)
+{
+    PatchMesh fresh = triangulate(scene, options, lines);
+    PatchTransfer transfer = overlap(mesh, PatchLocator(mesh), fresh);
+    return {std::move(fresh), std::move(transfer)};
+}
+
 PatchField<Rgb> prolong(const PatchMesh& new_mesh, const PatchField<Rgb>& values, const PatchTransfer& transfer)
 {
     PatchField<Rgb> result(new_mesh.patch_count(), Rgb(0.0));

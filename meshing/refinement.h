@@ -59,6 +59,10 @@ PatchMesh triangulate(const Scene& scene, const MeshingOptions& options, std::sp
 /// doesn't reach, only the first lines and bisections are honoured.
 Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
 
+/// The uniform mesh with the lines as edges, as triangulate() makes it, instead of `mesh`.
+Refinement remesh(const Scene& scene, const PatchMesh& mesh, std::span<const SurfaceLine> lines,
+                  const MeshingOptions& options);
+
 /// Which old patches each new one covers, by clipping them against each other in their surface's plane.
 PatchTransfer overlap(const PatchMesh& old_mesh, const PatchLocator& old_locator, const PatchMesh& new_mesh);
 

@@ -1,5 +1,7 @@
 #include "solver/adaptive.h"
 
+#include "formfactor/shadow_lines.h"
+
 #include <chrono>
 
 namespace patchlight {
@@ -31,6 +33,21 @@ SolveReport shoot(const Exchange& exchange, const RadiositySystem& system, Radio
     return solve_shooting(system, column_of, B, options, monitor);
 }
 
+/// From B to its reflected part, which starts from what direct light leaves: R = ρ H_direct + ρ F R.
+void take_direct_light(RadiositySystem& system, Radiosity& B)
+{
+    for (std::size_t i = 0; i < B.size(); ++i) {
+        const PatchId p(i);
+        B[p] -= system.E[p];
+        system.E[p] = system.rho[p] * system.direct[p];
+    }
+}
+
+void add(const Radiosity& more, Radiosity& B)
+{
+    for (std::size_t i = 0; i < B.size(); ++i) B[PatchId(i)] += more[PatchId(i)];
+}
+
 /// The stages of one cycle on one mesh: runs, times and reports each.
 class Cycle {
     template <class Work>
@@ -54,9 +71,9 @@ class Cycle {
     }
 
 public:
-    Cycle(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, int number,
+    Cycle(const Scene& scene, const RayCaster& caster, const DirectLight* direct, const PatchMesh& mesh, int number,
           const AdaptiveOptions& options, const AdaptiveObservers& observers)
-        : locator_(mesh), exchange_{scene, caster, mesh, locator_}, number_(number), options_(options),
+        : locator_(mesh), exchange_{scene, caster, mesh, locator_, direct}, number_(number), options_(options),
           observers_(observers)
     {}
 
@@ -95,7 +112,9 @@ public:
         MeshingOptions meshing = options_.meshing;
         meshing.max_elements = options_.max_elements;
         return stage("mesh", seconds.mesh, [&](const WorkMonitor&) {
-            return patchlight::refine(exchange_.scene, exchange_.mesh, plan, meshing);
+            return options_.refine == Refine::discontinuity
+                       ? remesh(exchange_.scene, exchange_.mesh, plan.lines, meshing)
+                       : patchlight::refine(exchange_.scene, exchange_.mesh, plan, meshing);
         });
     }
 
@@ -108,14 +127,20 @@ private:
         const bool shooting = options.solver == Solver::progressive;
         // Shooting computes columns on demand; the tight solve assembles all the same, for the energy balance.
         const bool rows = !shooting || &options == &options_.final;
-        const RadiositySystem system = stage("assemble", seconds.assemble, [&](const WorkMonitor& monitor) {
-            return rows ? assemble(exchange_, sampling, monitor) : unassembled(exchange_.scene, exchange_.mesh);
+        RadiositySystem system = stage("assemble", seconds.assemble, [&](const WorkMonitor& monitor) {
+            return rows ? assemble(exchange_, sampling, monitor) : unassembled(exchange_);
         });
         Solved solved;
+        const Radiosity emission = system.E;
+        if (exchange_.direct) take_direct_light(system, B);
         solved.report = stage("solve", seconds.solve, [&](const WorkMonitor& monitor) {
             return shooting ? shoot(exchange_, system, B, options, sampling, monitor)
                             : solve_gathering(system, B, options, monitor);
         });
+        if (exchange_.direct) {
+            add(emission, B);
+            system.E = emission;
+        }
         if (rows) solved.energy = energy_balance(system, B);
         rays += system.F.rays + solved.report.rays;
         return solved;
@@ -149,7 +174,8 @@ bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const Refinemen
     const bool good = options.target_error > 0 && error.relative <= options.target_error;
     // Within a fiftieth of the budget a further cycle would cost more than it buys.
     const bool full = options.max_elements > 0 && 50 * mesh.patch_count() >= 49 * options.max_elements;
-    return options.refine == Refine::none || good || full || plan.empty() || cycle >= options.iterations;
+    const bool lined = options.refine == Refine::discontinuity && !mesh.lines().empty();
+    return options.refine == Refine::none || good || full || lined || plan.empty() || cycle >= options.iterations;
 }
 
 Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
@@ -159,36 +185,76 @@ Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
     return cycle == 0 ? Stage::rough : Stage::adaptive;
 }
 
+bool uses_lines(const AdaptiveOptions& options)
+{
+    return options.refine == Refine::discontinuity || options.refine == Refine::both;
+}
+
+/// Emitters' light, as far as it is asked for and not too many emit.
+std::optional<DirectLight> direct_light(const Scene& scene, const AdaptiveOptions& options)
+{
+    constexpr std::size_t most_emitters = 500;
+    const std::vector<SurfaceId> sources = emitters(scene);
+    if (sources.size() > most_emitters || (options.direct == Direct::sampled && !uses_lines(options))) return {};
+    return std::optional<DirectLight>(std::in_place, scene, sources);
+}
+
+/// Where the light breaks off, for refinements that want to know.
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct,
+                                           const AdaptiveOptions& options)
+{
+    std::vector<Discontinuity> found;
+    if (!uses_lines(options) || !direct) return found;
+    std::vector<Rgb> exitance;
+    for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
+    return measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
+}
+
+RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,
+                         std::span<const Discontinuity> lines, const AdaptiveOptions& options)
+{
+    RefinementPlan plan;
+    if (options.refine == Refine::intensity || options.refine == Refine::both)
+        plan = mark(scene, mesh, error, options.mark);
+    if (uses_lines(options))
+        plan.lines =
+            worthwhile_lines(scene, mesh, error, lines, options.max_elements, options.target_error, options.lines);
+    return plan;
+}
+
 }  // namespace
 
 AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,
                                   const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
+    const std::optional<DirectLight> emitted = direct_light(scene, options);
+    const DirectLight* direct = emitted && options.direct == Direct::exact ? &*emitted : nullptr;
+    const std::vector<Discontinuity> lines = discontinuities(scene, emitted ? &*emitted : nullptr, options);
     const auto begin = Clock::now();
     PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
     double meshing = seconds_since(begin);  // of the mesh that the next cycle works on
 
     for (int cycle = start ? start->cycle : 0;; ++cycle) {
-        Cycle work(scene, caster, mesh, cycle, options, observers);
+        Cycle work(scene, caster, direct, mesh, cycle, options, observers);
         work.seconds.mesh = meshing;
         RefinementPlan plan;
         if (start) {  // this cycle was observed by the run that is continued
-            plan = mark(scene, mesh, start->error, options.mark);
+            plan = plan_next(scene, mesh, start->error, lines, options);
             start.reset();
         } else {
             Solved solved = options.refine == Refine::none ? work.solve_tightly(B) : work.solve_roughly(B);
             Evaluation evaluation = work.evaluate(B);
-            plan = mark(scene, mesh, evaluation.error, options.mark);
+            plan = plan_next(scene, mesh, evaluation.error, lines, options);
             const bool last = finished(mesh, evaluation.error, plan, cycle, options);
             if (last && options.refine != Refine::none) solved = work.solve_tightly(B);
 
             const VertexRadiosity& vertex_B = last ? solved.vertex_B : evaluation.vertex_B;
             if (observers.on_step)
                 observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.report,
-                                   evaluation.error, solved.energy, last ? 0 : plan.splits.size(), work.rays,
-                                   work.seconds});
+                                   evaluation.error, solved.energy, last ? 0 : plan.bisections.size(),
+                                   last ? 0 : plan.lines.size(), work.rays, work.seconds});
             if (last) {
                 const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
                 return {std::move(mesh), std::move(B),  std::move(solved.vertex_B),    std::move(evaluation.error),

@@ -2,6 +2,7 @@
 
 #include "formfactor/form_factors.h"
 #include "meshing/refinement.h"
+#include "solver/discontinuities.h"
 #include "solver/estimate.h"
 #include "solver/gather.h"
 #include "solver/progress.h"
@@ -14,7 +15,18 @@
 
 namespace patchlight {
 
-enum class Refine { none, intensity };
+/// What changes the uniform mesh.
+enum class Refine {
+    none,
+    intensity,      ///< edges are halved where the light asks for it
+    discontinuity,  ///< the lines where the light breaks off, otherwise uniform
+    both            ///< lines first, then intensity
+};
+
+enum class Direct {
+    exact,   ///< emitters clipped by what hides them, Lambert's formula; no noise
+    sampled  ///< by rays, like all else
+};
 
 /// Everything solve_adaptively needs to know.
 struct AdaptiveOptions {
@@ -26,7 +38,9 @@ struct AdaptiveOptions {
     GatherOptions gather;
     EstimateOptions estimate;
     MarkOptions mark;
-    Refine refine = Refine::intensity;
+    LineOptions lines;
+    Refine refine = Refine::both;
+    Direct direct = Direct::exact;    ///< scenes of more than 500 emitting surfaces are sampled all the same
     int iterations = 24;              ///< refinements at most, ≥ 1
     double target_error = 0;          ///< stop when the estimated error is below; 0 = go on to the budget
     std::size_t max_elements = 8000;  ///< budget of patches
@@ -49,7 +63,8 @@ struct AdaptiveStep {
     const SolveReport& solved;
     const ErrorEstimate& error;
     const EnergyBalance& energy;
-    std::size_t splits = 0;  ///< how many patches the plan splits next
+    std::size_t splits = 0;  ///< how many edges the plan halves next
+    std::size_t lines = 0;   ///< how many lines it inserts
     std::size_t rays = 0;    ///< traced in this cycle
     const StageSeconds& seconds;
 };

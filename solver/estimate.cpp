@@ -1,6 +1,7 @@
 #include "solver/estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -36,46 +37,63 @@ ExtraPoints extra_points(const Exchange& exchange)
                 extra.midpoint_of[p.value][k] = extra.midpoint_of[across[k].value][at];
                 continue;
             }
-            Vec3 middle = 0.5 * (mesh.position(c[k]) + mesh.position(c[(k + 1) % 3]));
-            if (!across[k].valid()) middle = moved_inside(middle, mesh.centroid(p), exchange.scene.diameter);
+            const Vec3 middle = 0.5 * (mesh.position(c[k]) + mesh.position(c[(k + 1) % 3]));
             extra.midpoint_of[p.value][k] = static_cast<std::uint32_t>(extra.points.size());
-            extra.points.push_back({middle, mesh.surface(p)});
+            extra.points.push_back(
+                across[k].valid() ? SurfacePoint{middle, mesh.surface(p), middle}
+                                  : border_point(middle, mesh.centroid(p), mesh.surface(p), exchange.scene.diameter));
         }
     }
     extra.first_centroid = static_cast<std::uint32_t>(extra.points.size());
-    for (const PatchId p : mesh.patches()) extra.points.push_back({mesh.centroid(p), mesh.surface(p)});
+    for (const PatchId p : mesh.patches())
+        extra.points.push_back({mesh.centroid(p), mesh.surface(p), mesh.centroid(p)});
     return extra;
 }
 
-PatchField<double> residual(const Exchange& exchange, const ExtraPoints& extra, const std::vector<Rgb>& H)
+/// The edge with the highest score; of lengths a twentieth decides where scores are much alike.
+std::uint8_t best_edge(const PatchMesh& mesh, PatchId p, std::array<double, 3> scores)
 {
-    PatchField<double> eta(exchange.mesh.patch_count(), 0.0);
+    const auto c = mesh.corners(p);
+    const double longest = mesh.longest_edge(p), most = *std::ranges::max_element(scores);
+    for (std::size_t k = 0; k < 3; ++k)
+        scores[k] += (most > 0 ? 0.05 * most : 1.0) *
+                     glm::distance(mesh.position(c[k]), mesh.position(c[(k + 1) % 3])) / longest;
+    return static_cast<std::uint8_t>(std::ranges::max_element(scores) - scores.begin());
+}
+
+void residual(const Exchange& exchange, const ExtraPoints& extra, const std::vector<Rgb>& H, ErrorEstimate& error)
+{
     for (const PatchId p : exchange.mesh.patches()) {
         const Rgb rho = exchange.scene.material_of(exchange.mesh.surface(p)).reflectance;
         const auto c = exchange.mesh.corners(p);
+        std::array<double, 3> at_middle{};
         double sum = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            sum += 2.0 / 15 *
-                   square(rho * (H[extra.midpoint_of[p.value][k]] - 0.5 * (H[c[k].value] + H[c[(k + 1) % 3].value])));
+        for (std::size_t k = 0; k < 3; ++k) {
+            at_middle[k] =
+                square(rho * (H[extra.midpoint_of[p.value][k]] - 0.5 * (H[c[k].value] + H[c[(k + 1) % 3].value])));
+            sum += 2.0 / 15 * at_middle[k];
+            at_middle[k] = std::sqrt(at_middle[k]);
+        }
         sum +=
             9.0 / 20 *
             square(rho * (H[extra.first_centroid + p.value] - (H[c[0].value] + H[c[1].value] + H[c[2].value]) / 3.0));
-        eta[p] = std::sqrt(exchange.mesh.area(p) * sum);
+        error.eta[p] = std::sqrt(exchange.mesh.area(p) * sum);
+        error.edge[p] = best_edge(exchange.mesh, p, at_middle);
     }
-    return eta;
 }
 
-PatchField<double> vertex_difference(const Exchange& exchange, const VertexRadiosity& B)
+void vertex_difference(const Exchange& exchange, const VertexRadiosity& B, ErrorEstimate& error)
 {
-    PatchField<double> eta(exchange.mesh.patch_count(), 0.0);
     for (const PatchId p : exchange.mesh.patches()) {
         if (!exchange.scene.material_of(exchange.mesh.surface(p)).reflects()) continue;
         const auto c = exchange.mesh.corners(p);
         const Rgb low = glm::min(B[c[0]], glm::min(B[c[1]], B[c[2]]));
         const Rgb high = glm::max(B[c[0]], glm::max(B[c[1]], B[c[2]]));
-        eta[p] = std::sqrt(exchange.mesh.area(p) * square(high - low));
+        std::array<double, 3> along{};
+        for (std::size_t k = 0; k < 3; ++k) along[k] = std::sqrt(square(B[c[k]] - B[c[(k + 1) % 3]]));
+        error.eta[p] = std::sqrt(exchange.mesh.area(p) * square(high - low));
+        error.edge[p] = best_edge(exchange.mesh, p, along);
     }
-    return eta;
 }
 
 }  // namespace
@@ -111,8 +129,12 @@ Evaluation evaluate(const Exchange& exchange, const Radiosity& B, const Estimate
     evaluation.rays = light.rays;
     evaluation.vertex_B = linear_radiosity(exchange, light.irradiance);
     ErrorEstimate& error = evaluation.error;
-    error.eta =
-        by_residual ? residual(exchange, extra, light.irradiance) : vertex_difference(exchange, evaluation.vertex_B);
+    error.eta = PatchField<double>(exchange.mesh.patch_count(), 0.0);
+    error.edge = PatchField<std::uint8_t>(exchange.mesh.patch_count(), 0);
+    if (by_residual)
+        residual(exchange, extra, light.irradiance, error);
+    else
+        vertex_difference(exchange, evaluation.vertex_B, error);
     double sum = 0;
     for (const double eta : error.eta.values()) sum += eta * eta;
     error.total = std::sqrt(sum);
@@ -128,7 +150,10 @@ RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstima
     for (const PatchId p : mesh.patches()) {
         if (!(error.eta[p] > 0)) continue;
         all += error.eta[p] * error.eta[p];
-        if (mesh.longest_edge(p) > options.smallest * scene.diameter) order.push_back(p.value);
+        const auto c = mesh.corners(p);
+        const std::size_t k = error.edge[p];
+        if (glm::distance(mesh.position(c[k]), mesh.position(c[(k + 1) % 3])) > options.smallest * scene.diameter)
+            order.push_back(p.value);
     }
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         const double x = error.eta[PatchId(a)], y = error.eta[PatchId(b)];
@@ -137,19 +162,13 @@ RefinementPlan mark(const Scene& scene, const PatchMesh& mesh, const ErrorEstima
     RefinementPlan plan;
     double held = 0;
     for (const std::uint32_t i : order) {
-        const double split = static_cast<double>(plan.splits.size()) / static_cast<double>(mesh.patch_count());
+        const double split = static_cast<double>(plan.bisections.size()) / static_cast<double>(mesh.patch_count());
         const bool enough = options.marking == Marking::doerfler ? held >= options.share * all && split >= options.least
                                                                  : split >= options.share;
         if (enough) break;
         const PatchId p(i);
-        plan.splits.push_back({p, 0});
+        plan.bisections.push_back({p, error.edge[p]});
         held += error.eta[p] * error.eta[p];
-    }
-    for (auto& split : plan.splits) {
-        const double excess = error.eta[split.patch] / error.eta[plan.splits.back().patch];
-        const double further = std::floor(std::log2(excess) / 2);
-        // A little less than the longest edge is one bisection; each further one takes a factor √2.
-        split.target_edge = 0.995 * mesh.longest_edge(split.patch) * std::exp2(-0.5 * further);
     }
     return plan;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tbb/enumerable_thread_specific.h>
 
 namespace patchlight {
 
@@ -15,8 +16,13 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
                                      .shadow_rays = options.shadow_rays,
                                      .small_source = options.small_source,
                                      .seed = options.seed};
-    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
-                             sampling);
+    const std::vector<SurfaceId> sources = exchange.direct ? std::vector<SurfaceId>{} : emitters(exchange.scene);
+    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, sources, sampling);
+    Radiosity arriving = B;
+    if (exchange.direct)
+        for (const PatchId p : exchange.mesh.patches())
+            arriving[p] -= exchange.scene.material_of(exchange.mesh.surface(p)).emission;
+    tbb::enumerable_thread_specific<DirectLight::Scratch> scratches;
     GatheredLight result;
     result.irradiance.assign(points.size(), Rgb(0.0));
     result.rays = for_each_row<RowScratch>(points.size(), monitor, [&](std::size_t i, RowScratch& scratch) {
@@ -25,7 +31,9 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
         sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
         Rgb H(0.0);
         for (std::size_t k = 0; k < scratch.row.patches.size(); ++k)
-            H += scratch.row.factors[k] * B[scratch.row.patches[k]];
+            H += scratch.row.factors[k] * arriving[scratch.row.patches[k]];
+        if (exchange.direct)
+            H += direct_irradiance(exchange.scene, *exchange.direct, point.limit, point.surface, scratches.local());
         result.irradiance[i] = H;
     });
     return result;
@@ -41,20 +49,25 @@ Vec3 moved_inside(const Vec3& point, const Vec3& inside, double diameter)
     return point + std::min(0.25, std::max(1e-3, 5e-5 * diameter / length)) * way;
 }
 
+SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter)
+{
+    return {moved_inside(place, inside, diameter), surface, place + 1e-6 * (inside - place)};
+}
+
 std::vector<SurfacePoint> vertex_points(const Exchange& exchange)
 {
     const PatchMesh& mesh = exchange.mesh;
     std::vector<SurfacePoint> points;
     points.reserve(mesh.vertex_count());
     for (const VertexId v : mesh.vertices()) {
-        Vec3 place = mesh.position(v);
-        if (mesh.on_border(v)) {
-            Vec3 inside(0.0);
-            const auto around = mesh.patches_around(v);
-            for (const PatchId p : around) inside += mesh.centroid(p) / static_cast<double>(around.size());
-            place = moved_inside(place, inside, exchange.scene.diameter);
+        if (!mesh.on_border(v)) {
+            points.push_back({mesh.position(v), mesh.surface(v), mesh.position(v)});
+            continue;
         }
-        points.push_back({place, mesh.surface(v)});
+        Vec3 inside(0.0);
+        const auto around = mesh.patches_around(v);
+        for (const PatchId p : around) inside += mesh.centroid(p) / static_cast<double>(around.size());
+        points.push_back(border_point(mesh.position(v), inside, mesh.surface(v), exchange.scene.diameter));
     }
     return points;
 }
@@ -78,8 +91,9 @@ void share_irradiance(const Exchange& exchange, double crease_angle, std::vector
             Rgb sum(0.0);
             double count = 0;
             for (const VertexId w : group)
-                if (glm::dot(scene.surface(mesh.surface(v)).frame.n, scene.surface(mesh.surface(w)).frame.n) >=
-                    cosine) {
+                if ((v == w || mesh.surface(v) != mesh.surface(w)) &&
+                    glm::dot(scene.surface(mesh.surface(v)).frame.n, scene.surface(mesh.surface(w)).frame.n) >=
+                        cosine) {
                     sum += irradiance[w.value];
                     ++count;
                 }

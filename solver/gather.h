@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// How light is gathered at points: small emitters by Lambert's formula times the visible fraction, the rest by
-/// rays over the hemisphere that bring B of the patches they meet.
+/// How light is gathered at points: emitters exactly (where Exchange has that; else small ones by Lambert's formula
+/// times the visible fraction), the rest by rays over the hemisphere that bring B of the patches they meet.
 struct GatherOptions {
     int rays = 512;             ///< over the hemisphere, 16 … 65536
     int shadow_rays = 1024;     ///< per point, shared among partly hidden emitters by their factors, 16 … 65536
@@ -21,8 +21,9 @@ struct GatherOptions {
 
 /// A place on a surface.
 struct SurfacePoint {
-    Vec3 position{0.0};
+    Vec3 position{0.0};  ///< where rays start: off every edge by what single precision needs
     SurfaceId surface;
+    Vec3 limit{0.0};  ///< where light is computed exactly: the place itself, off a border by a millionth of a patch
 };
 
 /// H in W/m² at points, and the rays it took.
@@ -38,6 +39,9 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
 
 /// A point moved off every edge toward `inside`, by a thousandth of the way or what single precision needs.
 Vec3 moved_inside(const Vec3& point, const Vec3& inside, double diameter);
+
+/// A place of a border, moved toward `inside` of its surface: what is there on this side.
+SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter);
 
 /// Where light is gathered for each vertex: moved into its surface.
 std::vector<SurfacePoint> vertex_points(const Exchange& exchange);
@@ -56,7 +60,7 @@ Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const G
 VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> irradiance);
 
 /// Averages irradiance over vertices at one place whose surfaces have one material and normals within the crease
-/// angle of the vertex's own.
+/// angle of the vertex's own; never over the copies of one surface's contact vertex.
 void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance);
 
 }  // namespace patchlight

@@ -55,7 +55,7 @@ std::vector<VertexRadiosity> progressive_snapshots(const Scene& scene, const Ray
     const std::vector<Shooter> shooters = coarse_shooters(scene, mesh);
 
     std::vector<SurfacePoint> receivers;
-    for (const PatchId p : mesh.patches()) receivers.push_back({mesh.centroid(p), mesh.surface(p)});
+    for (const PatchId p : mesh.patches()) receivers.push_back({mesh.centroid(p), mesh.surface(p), mesh.centroid(p)});
     const auto at_vertices = vertex_points(exchange);
     receivers.insert(receivers.end(), at_vertices.begin(), at_vertices.end());
 

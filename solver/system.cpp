@@ -2,6 +2,10 @@
 
 #include "formfactor/form_factor_matrix.h"
 
+#include <array>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 namespace patchlight {
 
 namespace {
@@ -28,9 +32,52 @@ Radiosity emittance(const Scene& scene, const PatchMesh& mesh)
     return E;
 }
 
-RadiositySystem unassembled(const Scene& scene, const PatchMesh& mesh)
+Rgb direct_irradiance(const Scene& scene, const DirectLight& direct, const Vec3& place, SurfaceId surface,
+                      DirectLight::Scratch& scratch)
 {
+    std::array<double, 16> few;
+    std::vector<double> many;
+    std::span<double> factors(few.data(), std::min(few.size(), direct.source_count()));
+    if (direct.source_count() > few.size()) {
+        many.resize(direct.source_count());
+        factors = many;
+    }
+    direct.factors(place, surface, factors, scratch);
+    Rgb H(0.0);
+    for (std::size_t k = 0; k < factors.size(); ++k) H += factors[k] * scene.material_of(direct.source(k)).emission;
+    return H;
+}
+
+namespace {
+
+/// The mean over each patch, by a rule of degree 2.
+PatchField<Rgb> mean_direct(const Exchange& exchange)
+{
+    const PatchMesh& mesh = exchange.mesh;
+    PatchField<Rgb> H(mesh.patch_count(), Rgb(0.0));
+    tbb::enumerable_thread_specific<DirectLight::Scratch> scratches;
+    tbb::parallel_for(std::size_t{0}, mesh.patch_count(), [&](std::size_t i) {
+        const PatchId p(i);
+        const SurfaceId surface = mesh.surface(p);
+        if (!exchange.scene.material_of(surface).reflects()) return;
+        const auto c = mesh.corners(p);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 place =
+                (4.0 * mesh.position(c[k]) + mesh.position(c[(k + 1) % 3]) + mesh.position(c[(k + 2) % 3])) / 6.0;
+            H[p] += direct_irradiance(exchange.scene, *exchange.direct, place, surface, scratches.local()) / 3.0;
+        }
+    });
+    return H;
+}
+
+}  // namespace
+
+RadiositySystem unassembled(const Exchange& exchange)
+{
+    const Scene& scene = exchange.scene;
+    const PatchMesh& mesh = exchange.mesh;
     RadiositySystem system;
+    if (exchange.direct) system.direct = mean_direct(exchange);
     system.area = mesh.areas();
     system.E = emittance(scene, mesh);
     system.rho = PatchField<Rgb>(mesh.patch_count());
@@ -40,9 +87,9 @@ RadiositySystem unassembled(const Scene& scene, const PatchMesh& mesh)
 
 RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor)
 {
-    RadiositySystem system = unassembled(exchange.scene, exchange.mesh);
+    RadiositySystem system = unassembled(exchange);
     system.F = form_factor_matrix(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, options, monitor,
-                                  emitters(exchange.scene));
+                                  exchange.direct ? std::vector<SurfaceId>{} : emitters(exchange.scene));
     return system;
 }
 
@@ -51,9 +98,11 @@ EnergyBalance energy_balance(const RadiositySystem& system, const Radiosity& B)
     EnergyBalance energy;
     for (std::size_t i = 0; i < B.size(); ++i) {
         const PatchId p(i);
-        Rgb H(0.0);
-        for (std::size_t k = system.F.row_start[i]; k < system.F.row_start[i + 1]; ++k)
-            H += system.F.factors[k] * B[PatchId(system.F.columns[k])];
+        Rgb H = system.direct.empty() ? Rgb(0.0) : system.direct[p];
+        for (std::size_t k = system.F.row_start[i]; k < system.F.row_start[i + 1]; ++k) {
+            const PatchId j(system.F.columns[k]);
+            H += system.F.factors[k] * (system.direct.empty() ? B[j] : B[j] - system.E[j]);
+        }
         const double A = system.area[p];
         energy.emitted += A * sum(system.E[p]);
         energy.absorbed += A * sum((1.0 - system.rho[p]) * H) + A * sum(B[p]) * system.F.backs[p];

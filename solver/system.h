@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactor/direct_light.h"
 #include "formfactor/row_sampler.h"
 #include "solver/radiosity.h"
 
@@ -14,14 +15,20 @@ struct Exchange {
     const RayCaster& caster;
     const PatchMesh& mesh;
     const PatchLocator& locator;
+    const DirectLight* direct = nullptr;  ///< emitters' light exactly; null: sampled like all else
 };
+
+/// The emitters' light that arrives at a point, exactly, W/m².
+Rgb direct_irradiance(const Scene& scene, const DirectLight& direct, const Vec3& place, SurfaceId surface,
+                      DirectLight::Scratch& scratch);
 
 /// (I − diag(ρ)F) B = E on a patch mesh: row i gathers, B_i = E_i + ρ_i Σ_j F_ij B_j. Three bands at once.
 struct RadiositySystem {
     PatchField<double> area;  ///< m²
     PatchField<Rgb> E;        ///< W/m²
     PatchField<Rgb> rho;
-    FormFactorMatrix F;  ///< empty when rows are only computed on demand
+    PatchField<Rgb> direct;  ///< the emitters' light at each patch, exactly (W/m², mean); empty: F brings it
+    FormFactorMatrix F;      ///< empty when rows are only computed on demand
 };
 
 /// The surfaces that emit.
@@ -30,8 +37,8 @@ std::vector<SurfaceId> emitters(const Scene& scene);
 /// B = E.
 Radiosity emittance(const Scene& scene, const PatchMesh& mesh);
 
-/// Areas, E and ρ of every patch; no form factors yet.
-RadiositySystem unassembled(const Scene& scene, const PatchMesh& mesh);
+/// Areas, E, ρ and exact direct light of every patch (the mean of three points inside); no form factors yet.
+RadiositySystem unassembled(const Exchange& exchange);
 
 /// The whole system with its sampled rows. Throws Interrupted.
 RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor = {});
@@ -44,7 +51,8 @@ struct EnergyBalance {
     double relative_residual = 0;  ///< (emitted − absorbed − escaped) / emitted; raw, nothing is normalised
 };
 
-/// From the gathered irradiance H = F B and the rows' own escape; needs an assembled system.
+/// From the gathered irradiance, H = F B or direct light + F (B − E), and the rows' own escape; needs an assembled
+/// system.
 EnergyBalance energy_balance(const RadiositySystem& system, const Radiosity& B);
 
 }  // namespace patchlight

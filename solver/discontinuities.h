@@ -1,0 +1,46 @@
+#pragma once
+
+#include "meshing/refinement.h"
+#include "meshing/surface_line.h"
+#include "solver/estimate.h"
+
+#include <span>
+#include <vector>
+
+namespace patchlight {
+
+class DirectLight;
+
+/// A line on a surface and how the light breaks off there: the jumps, from one side to the other, of the direct part of
+/// B, of its derivative across the line and of the second one; all bands together.
+struct Discontinuity {
+    SurfaceLine line;
+    double value = 0;   ///< W/m²
+    double slope = 0;   ///< W/m³
+    double second = 0;  ///< W/m⁴
+};
+
+/// Measures the jumps in the exact direct light of `exitance` (W/m², one a source of `direct`): a parabola through
+/// three points on either side of the line's middle and quarters, the largest of the three. Lines without any jump
+/// beyond rounding are left out.
+std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
+                                         std::span<const SurfaceLine> lines);
+
+struct LineOptions {
+    /// A line is inserted when, left out, it would cost more elements than this on its two sides.
+    double least_saving = 6;
+};
+
+/// How many elements a line costs when it is left out and the mesh is refined along it until each element's squared
+/// error is `element_error` (W²/m²): 2ℓ/h, where an element of size h across a jump J of the k-th derivative has the
+/// squared error J² h^(2k+2) / (12, 48, 600), whichever derivative costs most.
+double elements_saved(const Discontinuity& line, double element_error);
+
+/// The lines that aren't in the mesh yet and pay, most first; contact lines before all others. What an element's error
+/// will be at the end is told from the estimate now, as if the squared error fell like 1/N² up to `max_elements`, or
+/// from `target_error` when that is met earlier.
+std::vector<SurfaceLine> worthwhile_lines(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,
+                                          std::span<const Discontinuity> lines, std::size_t max_elements,
+                                          double target_error, const LineOptions& options = {});
+
+}  // namespace patchlight
