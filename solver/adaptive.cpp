@@ -253,8 +253,9 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
             const VertexRadiosity& vertex_B = last ? solved.vertex_B : evaluation.vertex_B;
             if (observers.on_step)
                 observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.report,
-                                   evaluation.error, solved.energy, last ? 0 : plan.bisections.size(),
-                                   last ? 0 : plan.lines.size(), work.rays, work.seconds});
+                                   evaluation.error, solved.energy,
+                                   last ? 0 : plan.bisections.size() + plan.lines.size(),
+                                   count_lines(scene, mesh, lines), work.rays, work.seconds});
             if (last) {
                 const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
                 return {std::move(mesh), std::move(B),  std::move(solved.vertex_B),    std::move(evaluation.error),

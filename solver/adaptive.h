@@ -9,6 +9,7 @@
 #include "solver/radiosity.h"
 #include "solver/solve.h"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -63,9 +64,9 @@ struct AdaptiveStep {
     const SolveReport& solved;
     const ErrorEstimate& error;
     const EnergyBalance& energy;
-    std::size_t splits = 0;  ///< how many edges the plan halves next
-    std::size_t lines = 0;   ///< how many lines it inserts
-    std::size_t rays = 0;    ///< traced in this cycle
+    std::size_t splits = 0;                            ///< how many edges the plan halves next, and lines it inserts
+    std::array<LineCount, line_kinds.size()> lines{};  ///< by kind
+    std::size_t rays = 0;                              ///< traced in this cycle
     const StageSeconds& seconds;
 };
 using StepObserver = std::function<void(const AdaptiveStep&)>;

@@ -135,4 +135,16 @@ std::vector<SurfaceLine> worthwhile_lines(const Scene& scene, const PatchMesh& m
     return result;
 }
 
+std::array<LineCount, line_kinds.size()> count_lines(const Scene& scene, const PatchMesh& mesh,
+                                                     std::span<const Discontinuity> lines)
+{
+    std::array<LineCount, line_kinds.size()> counts{};
+    for (const Discontinuity& line : lines) {
+        LineCount& count = counts[static_cast<std::size_t>(line.line.kind)];
+        ++count.found;
+        if (is_in_mesh(scene, mesh, line.line)) ++count.inserted;
+    }
+    return counts;
+}
+
 }  // namespace patchlight

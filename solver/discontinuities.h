@@ -4,6 +4,7 @@
 #include "meshing/surface_line.h"
 #include "solver/estimate.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -42,5 +43,14 @@ double elements_saved(const Discontinuity& line, double element_error);
 std::vector<SurfaceLine> worthwhile_lines(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,
                                           std::span<const Discontinuity> lines, std::size_t max_elements,
                                           double target_error, const LineOptions& options = {});
+
+/// How many lines of a kind were found, and how many of them the mesh holds.
+struct LineCount {
+    std::size_t found = 0, inserted = 0;
+};
+
+/// By kind.
+std::array<LineCount, line_kinds.size()> count_lines(const Scene& scene, const PatchMesh& mesh,
+                                                     std::span<const Discontinuity> lines);
 
 }  // namespace patchlight

@@ -37,7 +37,7 @@ double elements_of(const Scene& scene, const AdaptiveOptions& options)
     }
     const double edge = options.meshing.max_edge;
     const double first = total_area(scene) / (area_per_squared_edge * edge * edge);
-    return options.refine == Refine::none ? first : std::max(budget, first);
+    return options.refine == Refine::none || options.refine == Refine::discontinuity ? first : std::max(budget, first);
 }
 
 }  // namespace

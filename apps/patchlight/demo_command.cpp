@@ -22,7 +22,8 @@ void check_folder(const std::filesystem::path& folder)
     if (!std::filesystem::is_directory(folder, error)) {
         throw FolderRefused(fmt::format("{} is a file; name a new folder with -o", folder.string()));
     }
-    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
         if (entry->path().filename() != "scene") {
             throw FolderRefused(
                 fmt::format("{} is not empty and holds no run; name a new folder with -o", folder.string()));

@@ -18,9 +18,10 @@ constexpr const char* run_json = "print run.json instead of a summary";
 /// Words that are only understood once everything has been read.
 struct Texts {
     SceneTexts scene;
-    std::string refine = "intensity", solver = "gauss-seidel", method = "hemisphere", indicator = "residual",
-                marking = "doerfler", directions = "stratified", order = "unshot-power", pictures = "all", size,
-                snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from, to, up = "0,1,0";
+    std::string refine = "both", direct = "exact", solver = "gauss-seidel", method = "hemisphere",
+                indicator = "residual", marking = "doerfler", directions = "stratified", order = "unshot-power",
+                pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from, to,
+                up = "0,1,0";
     double max_edge = 0, fov = 0;
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;
@@ -29,11 +30,13 @@ struct Texts {
 void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
 {
     AdaptiveOptions& o = c.options;
-    app.add_option("--refine", t.refine, "where the mesh is refined; none: one uniform mesh")
+    app.add_option("--refine", t.refine,
+                   "what changes the uniform mesh: the light's intensity, the lines where light and shadow break off, "
+                   "both, or nothing")
         ->check(CLI::IsMember(words(refine_names())))
         ->capture_default_str();
     app.add_option("--max-edge", t.max_edge,
-                   "longest edge of the first mesh, in --unit [intensity: a twelfth of the scene's diameter; none: "
+                   "longest edge of the first mesh, in --unit [a twelfth of the scene's diameter; none, discontinuity: "
                    "what --max-elements allows]")
         ->check(number_above(0))
         ->type_name("LENGTH");
@@ -61,6 +64,9 @@ void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
 void add_light(CLI::App& app, SolveCommand& c, Texts& t)
 {
     AdaptiveOptions& o = c.options;
+    app.add_option("--direct", t.direct, "how the emitters' light is found: their visible part exactly, or by rays")
+        ->check(CLI::IsMember(words(direct_names())))
+        ->capture_default_str();
     app.add_option("--solver", t.solver, "of the final solve")
         ->check(CLI::IsMember(words(solver_names())))
         ->capture_default_str();
@@ -88,7 +94,7 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
         ->check(CLI::IsMember(words(direction_names())))
         ->capture_default_str();
     app.add_option("--shadow-rays", o.gather.shadow_rays,
-                   "per vertex, shared among the lamps that are partly hidden from it")
+                   "sampled direct light: per vertex, shared among the lamps that are partly hidden from it")
         ->check(whole_between(16, 65536))
         ->type_name("N")
         ->capture_default_str();
@@ -127,6 +133,7 @@ void finish_solve(SolveCommand& c, const Texts& t)
     finish_scene(c.scene, t.scene);
     AdaptiveOptions& o = c.options;
     o.refine = mode_of(refine_names(), t.refine);
+    o.direct = mode_of(direct_names(), t.direct);
     o.final.solver = mode_of(solver_names(), t.solver);
     // Shots are dear: a sweep of gathering costs what a few of them do.
     if (o.final.solver == Solver::progressive && t.tolerance_option->count() == 0) o.final.tolerance = 0.01;
@@ -144,7 +151,8 @@ void finish_solve(SolveCommand& c, const Texts& t)
     o.mark.marking = mode_of(marking_names(), t.marking);
     o.gather.seed = o.form_factors.seed;
     o.meshing.max_edge = t.max_edge * c.scene.options.unit;
-    if (o.refine == Refine::none && (t.max_edge <= 0 || t.max_elements_option->count() > 0)) {
+    const bool uniform = o.refine == Refine::none || o.refine == Refine::discontinuity;
+    if (uniform && (t.max_edge <= 0 || t.max_elements_option->count() > 0)) {
         o.meshing.max_elements = o.max_elements;
     }
     c.pictures.pictures = t.pictures == "all";

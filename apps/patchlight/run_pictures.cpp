@@ -21,8 +21,7 @@ std::string text_of(const Vec3& v)
 RunPictures::RunPictures(const Scene& scene, const RayCaster& caster, const View& view, int width, int height)
     : scene_(scene), fine_(trace_view(caster, view, width, height, samples_along_a_pixel)),
       centers_(trace_view(caster, view, width, height, 1))
-{
-}
+{}
 
 double RunPictures::exposure_for(const ShownSolution& solution) const
 {

@@ -36,7 +36,11 @@ Json seconds_of(const AdaptiveStep& step)
     const double tracing = s.assemble + s.solve + s.gather + s.estimate;
     return {{"cycle", step.cycle},
             {"seconds",
-             {{"mesh", s.mesh}, {"assemble", s.assemble}, {"solve", s.solve}, {"gather", s.gather}, {"estimate", s.estimate}}},
+             {{"mesh", s.mesh},
+              {"assemble", s.assemble},
+              {"solve", s.solve},
+              {"gather", s.gather},
+              {"estimate", s.estimate}}},
             {"rays_per_second", tracing > 0 ? static_cast<double>(step.rays) / tracing : 0.0}};
 }
 
@@ -96,8 +100,8 @@ bool SolveRun::go()
         const RunRecord before = folder_.record();
         if (!before.cycles.empty()) {
             exposure_ = before.cycles.front().exposure;
-            session_.messages.note(fmt::format("{}: resumed after cycle {}", folder_.path().string(),
-                                               before.cycles.back().cycle));
+            session_.messages.note(
+                fmt::format("{}: resumed after cycle {}", folder_.path().string(), before.cycles.back().cycle));
         }
         // Nothing left to split: that cycle was the last one, only the pictures are missing.
         if (before.cycles.empty() || before.cycles.back().splits > 0) {
@@ -128,8 +132,11 @@ void SolveRun::solve_from(const RunRecord& before)
     if (!before.cycles.empty()) {
         const CycleRecord& last = before.cycles.back();
         StoredSolution solution = stored(last.cycle);
-        from.emplace(AdaptiveStart{last.cycle, std::move(solution.mesh), std::move(solution.B),
-                                   {std::move(solution.eta), last.error_total, last.estimated_error}});
+        from.emplace(
+            AdaptiveStart{last.cycle,
+                          std::move(solution.mesh),
+                          std::move(solution.B),
+                          {std::move(solution.eta), std::move(solution.edge), last.error_total, last.estimated_error}});
     }
     solve_adaptively(input_.scene, command_.options, observers, std::move(from));
 }
@@ -137,7 +144,8 @@ void SolveRun::solve_from(const RunRecord& before)
 void SolveRun::on_step(const AdaptiveStep& step)
 {
     CycleRecord record = record_of(step);
-    const std::string bytes = encode_solution(input_.scene, step.mesh, step.B, step.vertex_B, step.error.eta);
+    const std::string bytes =
+        encode_solution(input_.scene, step.mesh, step.B, step.vertex_B, step.error.eta, step.error.edge);
     record.solution_sha256 = sha256_hex(bytes);
     folder_.write_in_cycle(step.cycle, "solution.glb", bytes);
     session_.interruption.check();

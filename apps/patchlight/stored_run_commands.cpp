@@ -66,13 +66,15 @@ int run_command(const RenderCommand& command, Session& session)
     session.interruption.check();
     if (command.image.ends_with(".exr")) {
         options.patch_borders = command.wireframe;
-        const Json about = {{"run", run.record.identity.options}, {"shade", command.shade == Shade::flat ? "flat" : "gouraud"}};
+        const Json about = {{"run", run.record.identity.options},
+                            {"shade", command.shade == Shade::flat ? "flat" : "gouraud"}};
         session.writer.write(folder_first(command.image),
                              encode_exr(shade_view(shown, centers, options), exr_metadata(stored.scene, view, about)));
         return 0;
     }
-    const double exposure =
-        command.exposure ? *command.exposure : auto_exposure(stored.scene, centers, shade_view(shown, centers, options));
+    const double exposure = command.exposure
+                                ? *command.exposure
+                                : auto_exposure(stored.scene, centers, shade_view(shown, centers, options));
     options.samples = 2;
     options.patch_borders = command.wireframe;
     options.white = white_at(exposure);
@@ -110,7 +112,7 @@ int run_command(const ExportCommand& command, Session& session)
     const std::string bytes = command.format == "ply"   ? encode_ply(stored)
                               : command.format == "csv" ? encode_csv(stored)
                                                         : encode_solution(stored.scene, stored.mesh, stored.B,
-                                                                          stored.vertex_B, stored.eta);
+                                                                          stored.vertex_B, stored.eta, stored.edge);
     session.writer.write(folder_first(command.output), bytes);
     return 0;
 }

@@ -39,7 +39,8 @@ void check_keys(const Json& view)
     }
     for (const auto& [key, value] : view.items()) {
         if (key != "name" && key != "from" && key != "to" && key != "forward" && key != "up" && key != "fov") {
-            throw std::invalid_argument(fmt::format("unknown key \"{}\"; there are name, from, to, forward, up, fov", key));
+            throw std::invalid_argument(
+                fmt::format("unknown key \"{}\"; there are name, from, to, forward, up, fov", key));
         }
     }
     if (view.contains("to") == view.contains("forward")) {

@@ -88,8 +88,7 @@ std::vector<float> floats_of(std::span<const Vec3> values, double scale, double 
 
 tinygltf::Value value_of(const Rgb& c)
 {
-    return tinygltf::Value(
-        tinygltf::Value::Array{tinygltf::Value(c.r), tinygltf::Value(c.g), tinygltf::Value(c.b)});
+    return tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(c.r), tinygltf::Value(c.g), tinygltf::Value(c.b)});
 }
 
 /// Unlit: the light is in the colours already.
@@ -193,8 +192,9 @@ tinygltf::Model parsed(std::string_view bytes)
     std::string error, warning;
     bool read = false;
     try {
-        read = reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()),
-                                           static_cast<unsigned int>(bytes.size()));
+        read =
+            reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()),
+                                        static_cast<unsigned int>(bytes.size()));
     } catch (const std::exception& problem) {
         error = problem.what();
     }

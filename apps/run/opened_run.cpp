@@ -14,7 +14,8 @@ void clear_run(const std::filesystem::path& folder)
                              "mesh-before.png", "mesh-after.png", "view.exr"}) {
         std::filesystem::remove(folder / name, error);
     }
-    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         if (name.starts_with("shots-") && name.ends_with(".png")) {
             std::filesystem::remove(entry->path(), error);
@@ -47,9 +48,12 @@ const CycleRecord& record_of(const OpenedRun& run, const WhichCycle& which)
             fmt::format("{} has no finished cycle yet; solve it to the end first", run.folder.string()));
     }
     switch (which.kind) {
-    case WhichCycle::Kind::first: return cycles.front();
-    case WhichCycle::Kind::last: return cycles.back();
-    case WhichCycle::Kind::number: break;
+    case WhichCycle::Kind::first:
+        return cycles.front();
+    case WhichCycle::Kind::last:
+        return cycles.back();
+    case WhichCycle::Kind::number:
+        break;
     }
     for (const CycleRecord& cycle : cycles) {
         if (cycle.cycle == which.number) {

@@ -19,7 +19,7 @@ public:
 /// A point to probe, in the coordinates of the scene's file.
 struct ProbePoint {
     Vec3 position{0.0};
-    std::optional<Vec3> normal;           ///< the side that is asked for, any length > 0
+    std::optional<Vec3> normal;             ///< the side that is asked for, any length > 0
     std::array<std::string, 3> as_written;  ///< x, y, z as they stand in the file
 };
 

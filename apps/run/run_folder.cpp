@@ -85,8 +85,7 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
 {
     if (!std::filesystem::exists(folder_ / "run.json")) {
         if (holds_others(folder_, also_ours)) {
-            throw FolderRefused(
-                fmt::format("{} is not empty and holds no run; name a new folder", folder_.string()));
+            throw FolderRefused(fmt::format("{} is not empty and holds no run; name a new folder", folder_.string()));
         }
         return;
     }
@@ -99,15 +98,16 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
     }
     if (!same_run(stored.record.identity, identity)) {
         const bool options = stored.record.identity.options != identity.options;
-        throw FolderRefused(fmt::format("{} holds a run {}; name a new folder", folder_.string(),
-                                        options ? "with other options"
-                                                : "of another scene, or of an earlier state of this one"));
+        throw FolderRefused(
+            fmt::format("{} holds a run {}; name a new folder", folder_.string(),
+                        options ? "with other options" : "of another scene, or of an earlier state of this one"));
     }
     const bool finished =
         stored.record.status == RunStatus::finished || stored.record.status == RunStatus::not_converged;
     if (!finished && (stored.version != tool_version() || stored.commit != tool_commit())) {
-        throw FolderRefused(fmt::format("{} holds an unfinished run of patchlight {} ({}), this is {} ({}); name a new folder",
-                                        folder_.string(), stored.version, stored.commit, tool_version(), tool_commit()));
+        throw FolderRefused(
+            fmt::format("{} holds an unfinished run of patchlight {} ({}), this is {} ({}); name a new folder",
+                        folder_.string(), stored.version, stored.commit, tool_version(), tool_commit()));
     }
     state_ = finished ? FolderState::finished : FolderState::unfinished;
     record_ = std::move(stored.record);

@@ -4,7 +4,16 @@ namespace patchlight {
 
 const ModeNames<Refine>& refine_names()
 {
-    static const ModeNames<Refine> names{{"none", Refine::none}, {"intensity", Refine::intensity}};
+    static const ModeNames<Refine> names{{"none", Refine::none},
+                                         {"intensity", Refine::intensity},
+                                         {"discontinuity", Refine::discontinuity},
+                                         {"both", Refine::both}};
+    return names;
+}
+
+const ModeNames<Direct>& direct_names()
+{
+    static const ModeNames<Direct> names{{"exact", Direct::exact}, {"sampled", Direct::sampled}};
     return names;
 }
 
@@ -100,6 +109,7 @@ Json json_of(const SolveOptions& options)
 Json json_of(const AdaptiveOptions& o)
 {
     return {{"refine", name_of(refine_names(), o.refine)},
+            {"direct", name_of(direct_names(), o.direct)},
             {"iterations", o.iterations},
             {"target_error", o.target_error},
             {"max_elements", o.max_elements},
@@ -128,7 +138,8 @@ Json json_of(const AdaptiveOptions& o)
              {{"marking", name_of(marking_names(), o.mark.marking)},
               {"share", o.mark.share},
               {"least", o.mark.least},
-              {"smallest", o.mark.smallest}}}};
+              {"smallest", o.mark.smallest}}},
+            {"lines", {{"least_saving", o.lines.least_saving}}}};
 }
 
 Json json_of(const SceneOptions& o)

@@ -19,6 +19,7 @@ template <class Mode>
 using ModeNames = std::vector<std::pair<std::string, Mode>>;
 
 const ModeNames<Refine>& refine_names();
+const ModeNames<Direct>& direct_names();
 const ModeNames<Solver>& solver_names();
 /// Those that a solve offers.
 const ModeNames<FormFactorMethod>& form_factor_names();

@@ -26,12 +26,37 @@ EnergyBalance energy_in(const Json& json)
 
 RunStatus status_in(const std::string& word)
 {
-    for (RunStatus status : {RunStatus::running, RunStatus::interrupted, RunStatus::not_converged, RunStatus::finished}) {
+    for (RunStatus status :
+         {RunStatus::running, RunStatus::interrupted, RunStatus::not_converged, RunStatus::finished}) {
         if (name_of(status) == word) {
             return status;
         }
     }
     throw SceneError("run", "unknown status \"" + word + "\"");
+}
+
+using LineCounts = std::array<LineCount, line_kinds.size()>;
+
+Json json_of(const LineCounts& counts)
+{
+    Json json = Json::object();
+    for (const LineKind kind : line_kinds) {
+        const LineCount& count = counts[static_cast<std::size_t>(kind)];
+        json[std::string(name_of(kind))] = {
+            {"found", count.found}, {"inserted", count.inserted}, {"left_out", count.found - count.inserted}};
+    }
+    return json;
+}
+
+LineCounts line_counts_in(const Json& json)
+{
+    LineCounts counts;
+    for (const LineKind kind : line_kinds) {
+        const Json& count = json.at(std::string(name_of(kind)));
+        counts[static_cast<std::size_t>(kind)] = {count.at("found").get<std::size_t>(),
+                                                  count.at("inserted").get<std::size_t>()};
+    }
+    return counts;
 }
 
 CycleRecord cycle_in(const Json& json)
@@ -51,6 +76,7 @@ CycleRecord cycle_in(const Json& json)
     r.solver_residual = solve.at("residual").get<double>();
     r.solver_converged = solve.at("converged").get<bool>();
     r.splits = json.at("splits").get<std::size_t>();
+    r.lines = line_counts_in(json.at("lines"));
     r.energy = energy_in(json.at("energy"));
     r.exposure = json.at("exposure").get<double>();
     r.solution_sha256 = json.at("solution_sha256").get<std::string>();
@@ -75,10 +101,14 @@ auto reading(Read&& read)
 std::string name_of(RunStatus status)
 {
     switch (status) {
-    case RunStatus::running: return "running";
-    case RunStatus::interrupted: return "interrupted";
-    case RunStatus::not_converged: return "not-converged";
-    case RunStatus::finished: return "finished";
+    case RunStatus::running:
+        return "running";
+    case RunStatus::interrupted:
+        return "interrupted";
+    case RunStatus::not_converged:
+        return "not-converged";
+    case RunStatus::finished:
+        return "finished";
     }
     return "unknown";
 }
@@ -99,6 +129,7 @@ CycleRecord record_of(const AdaptiveStep& step)
     r.solver_residual = step.solved.residual;
     r.solver_converged = step.solved.converged;
     r.splits = step.splits;
+    r.lines = step.lines;
     r.energy = step.energy;
     return r;
 }
@@ -119,6 +150,7 @@ Json json_of(const CycleRecord& r)
               {"residual", r.solver_residual},
               {"converged", r.solver_converged}}},
             {"splits", r.splits},
+            {"lines", json_of(r.lines)},
             {"energy", json_of(r.energy)},
             {"exposure", r.exposure},
             {"solution_sha256", r.solution_sha256}};

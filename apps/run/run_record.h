@@ -2,6 +2,7 @@
 
 #include "apps/run/run_options.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct CycleRecord {
     std::size_t solver_iterations = 0;
     double solver_residual = 0;
     bool solver_converged = false;
-    std::size_t splits = 0;  ///< patches that the plan splits next
+    std::size_t splits = 0;                            ///< edges that the plan halves next, and lines that it inserts
+    std::array<LineCount, line_kinds.size()> lines{};  ///< by kind
     EnergyBalance energy;
     double exposure = 0;          ///< stops, of the cycle's picture
     std::string solution_sha256;  ///< of the cycle's solution.glb
@@ -34,8 +36,8 @@ CycleRecord cycle_record_in(const Json& json);
 
 /// What tells one run from another: the scene as it was read, and all options.
 struct RunIdentity {
-    std::string scene_file;    ///< name without folders
-    std::string scene_sha256;  ///< of the file
+    std::string scene_file;      ///< name without folders
+    std::string scene_sha256;    ///< of the file
     std::string content_sha256;  ///< of the scene that was read from it and from the files it names
     std::size_t surfaces = 0;
     double area = 0;  ///< m²

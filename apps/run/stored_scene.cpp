@@ -38,9 +38,9 @@ Json header_of(const Scene& scene)
                          {"vertical_fov", v.vertical_fov},
                          {"aspect", v.aspect}});
     }
-    return {{"name", scene.name},         {"center", json_of(scene.center)}, {"diameter", scene.diameter},
-            {"unit", scene.unit},         {"closed", scene.closed},          {"materials", materials},
-            {"objects", scene.objects},   {"views", views}};
+    return {
+        {"name", scene.name},     {"center", json_of(scene.center)}, {"diameter", scene.diameter}, {"unit", scene.unit},
+        {"closed", scene.closed}, {"materials", materials},          {"objects", scene.objects},   {"views", views}};
 }
 
 double number(const Json& value)
@@ -80,7 +80,8 @@ Scene scene_in(const Json& header)
 void store_surfaces(const Scene& scene, ByteViews& views)
 {
     std::vector<double> frames;
-    std::vector<std::uint32_t> integers;  // a surface: material, object, number of loops, then each loop's length and vertices
+    std::vector<std::uint32_t>
+        integers;  // a surface: material, object, number of loops, then each loop's length and vertices
     for (const Surface& s : scene.surfaces) {
         for (const Vec3* v : {&s.frame.origin, &s.frame.u, &s.frame.v, &s.frame.n}) {
             frames.insert(frames.end(), {v->x, v->y, v->z});
@@ -178,8 +179,7 @@ void store_scene(const Scene& scene, ByteViews& views)
     views["scene_vertices"] = bytes_of(std::span<const Vec3>(scene.vertices));
     std::vector<std::uint32_t> triangles;
     for (const SceneTriangle& t : scene.triangles) {
-        triangles.insert(triangles.end(),
-                         {t.vertices[0], t.vertices[1], t.vertices[2], t.front.value, t.back.value});
+        triangles.insert(triangles.end(), {t.vertices[0], t.vertices[1], t.vertices[2], t.front.value, t.back.value});
     }
     views["scene_triangles"] = bytes_of(triangles);
     store_surfaces(scene, views);

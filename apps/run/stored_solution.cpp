@@ -33,6 +33,35 @@ std::vector<SurfaceId> surface_ids(const ByteViews& views, const std::string& na
     return ids;
 }
 
+constexpr std::size_t line_numbers = 6;  // kind, left, right, beyond
+
+std::vector<std::uint32_t> numbers_of(std::span<const MeshLine> lines)
+{
+    std::vector<std::uint32_t> numbers;
+    for (const MeshLine& line : lines) {
+        numbers.insert(numbers.end(), {static_cast<std::uint32_t>(line.kind), line.left[0], line.left[1], line.right[0],
+                                       line.right[1], line.beyond ? 1U : 0U});
+    }
+    return numbers;
+}
+
+std::vector<MeshLine> lines_in(const ByteViews& views)
+{
+    const std::vector<std::uint32_t> numbers = integers_in(views, "lines");
+    if (numbers.size() % line_numbers != 0) {
+        throw SceneError("solution", "the array \"lines\" is cut short");
+    }
+    std::vector<MeshLine> lines;
+    for (std::size_t i = 0; i < numbers.size(); i += line_numbers) {
+        const std::uint32_t* n = &numbers[i];
+        if (n[0] >= line_kinds.size()) {
+            throw SceneError("solution", "a line is of no known kind");
+        }
+        lines.push_back({line_kinds[n[0]], {n[1], n[2]}, {n[3], n[4]}, n[5] != 0});
+    }
+    return lines;
+}
+
 PatchMeshArrays arrays_in(const ByteViews& views, const Scene& scene)
 {
     PatchMeshArrays arrays;
@@ -50,6 +79,7 @@ PatchMeshArrays arrays_in(const ByteViews& views, const Scene& scene)
         arrays.vertex_surface.size() != arrays.positions.size()) {
         throw SceneError("solution", "its arrays don't fit together");
     }
+    arrays.lines = lines_in(views);
     return arrays;
 }
 
@@ -71,13 +101,22 @@ StoredSolution restore(const ByteViews& views)
     stored.B = Radiosity(of_size(vectors_in(views, "patch_radiosity"), patches));
     stored.vertex_B = VertexRadiosity(of_size(vectors_in(views, "vertex_radiosity"), vertices));
     stored.eta = PatchField<double>(of_size(doubles_in(views, "eta"), patches));
+    stored.edge = PatchField<std::uint8_t>(patches);
+    const std::vector<std::uint32_t> edges = of_size(integers_in(views, "edge"), patches);
+    for (std::size_t i = 0; i < patches; ++i) {
+        if (edges[i] > 2) {
+            throw SceneError("solution", "a patch has no such edge");
+        }
+        stored.edge[PatchId(i)] = static_cast<std::uint8_t>(edges[i]);
+    }
     return stored;
 }
 
 }  // namespace
 
 std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Radiosity& B,
-                            const VertexRadiosity& vertex_B, const PatchField<double>& eta)
+                            const VertexRadiosity& vertex_B, const PatchField<double>& eta,
+                            const PatchField<std::uint8_t>& edge)
 {
     const PatchMeshArrays& arrays = mesh.arrays();
     std::vector<std::uint32_t> corners;
@@ -94,6 +133,8 @@ std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Rad
     views["patch_radiosity"] = bytes_of(B.values());
     views["vertex_radiosity"] = bytes_of(vertex_B.values());
     views["eta"] = bytes_of(eta.values());
+    views["edge"] = bytes_of(std::vector<std::uint32_t>(edge.values().begin(), edge.values().end()));
+    views["lines"] = bytes_of(numbers_of(mesh.lines()));
     return encode_glb(scene, mesh, vertex_B, views);
 }
 

@@ -15,14 +15,16 @@ struct StoredSolution {
     PatchMesh mesh;
     Radiosity B;
     VertexRadiosity vertex_B;
-    PatchField<double> eta;  ///< W/m²·m, as in ErrorEstimate
+    PatchField<double> eta;         ///< W/m²·m, as in ErrorEstimate
+    PatchField<std::uint8_t> edge;  ///< as in ErrorEstimate
 };
 
 /// A binary glTF 2.0 file. For viewers: POSITION relative to the scene's centre (which the node carries), one
 /// primitive a material, unlit COLOR_0 = B/π scaled into [0, 1], float _RADIOSITY in W/m². For reading back:
 /// doubles and ids in bufferViews whose numbers stand in `extras.patchlight.views`.
 std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Radiosity& B,
-                            const VertexRadiosity& vertex_B, const PatchField<double>& eta);
+                            const VertexRadiosity& vertex_B, const PatchField<double>& eta,
+                            const PatchField<std::uint8_t>& edge);
 
 /// Reads it back, equal to the bit. `name` is used in messages. Throws SceneError ("solution") for anything
 /// that isn't a whole stored solution; opens no other file.
