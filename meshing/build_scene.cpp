@@ -2,7 +2,8 @@
 
 #include "meshing/arrange_plane.h"
 #include "meshing/closedness.h"
-#include "meshing/crossing_faces.h"
+#include "meshing/contact_lines.h"
+#include "meshing/covered_parts.h"
 #include "meshing/edge_chains.h"
 #include "meshing/join_surfaces.h"
 #include "meshing/plane_groups.h"
@@ -29,6 +30,17 @@ void require_light(const RawScene& raw, const PolygonSoup& soup, const SceneOpti
     }
 }
 
+void require_uncovered_light(const RawScene& raw, const Scene& scene, const SceneOptions& options)
+{
+    const bool lit = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                 [&](const Surface& s) { return scene.materials[s.material.value].emits(); });
+    if (!lit && options.require_emitter) {
+        throw SceneError("dark", fmt::format("{}: every emitter is covered: its front meets nothing but backs; turn it "
+                                             "round or use --two-sided MATERIAL",
+                                             raw.file_name));
+    }
+}
+
 std::size_t count_nonmanifold_edges(const PolygonSoup& soup, const EdgeChains& chains)
 {
     std::map<EdgeChains::Edge, int> uses;
@@ -38,6 +50,15 @@ std::size_t count_nonmanifold_edges(const PolygonSoup& soup, const EdgeChains& c
     }
     return static_cast<std::size_t>(
         std::count_if(uses.begin(), uses.end(), [](const auto& entry) { return entry.second > 2; }));
+}
+
+void count(const PlaneArrangement& plane, SceneReport& report)
+{
+    report.coplanar_overlaps += plane.overlaps.size();
+    report.self_crossing_faces += plane.self_crossing.size();
+    for (const PlaneTriangle& t : plane.triangles) {
+        if (t.front != PlaneTriangle::black && t.back != PlaneTriangle::black) ++report.opposed_pairs;
+    }
 }
 
 void append(PlaneSurfaces plane, Scene& scene)
@@ -133,21 +154,22 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
     report.warnings = raw.warnings;
     PolygonSoup soup = make_polygon_soup(raw, options, report);
     require_light(raw, soup, options);
-    report.crossing_faces = count_crossing_faces(soup);
     const EdgeChains chains(soup, report);
     report.nonmanifold_edges = count_nonmanifold_edges(soup, chains);
     const std::vector<std::uint32_t> rank = rank_faces(soup);
 
-    Scene& scene = loaded.scene;
-    for (const PlaneGroup& group : make_plane_groups(soup, chains)) {
-        const PlaneArrangement arrangement = arrange_plane(group, chains, rank, soup);
-        report.coplanar_overlaps += arrangement.overlaps.size();
-        report.self_crossing_faces += arrangement.self_crossing.size();
-        for (const PlaneTriangle& t : arrangement.triangles) {
-            if (t.front != PlaneTriangle::black && t.back != PlaneTriangle::black) ++report.opposed_pairs;
-        }
-        append(join_surfaces(group, arrangement, soup, options.join_objects), scene);
+    const std::vector<PlaneGroup> groups = make_plane_groups(soup, chains);
+    std::vector<PlaneArrangement> planes;
+    for (const PlaneGroup& group : groups) {
+        planes.push_back(arrange_plane(group, chains, rank, soup));
+        count(planes.back(), report);
     }
+    Scene& scene = loaded.scene;
+    SpaceRegions regions = regions_of(planes, soup);
+    scene.closed = is_closed(planes, soup, regions);
+    report.covered_area = blacken_covered_parts(planes, soup, regions);
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        append(join_surfaces(groups[g], planes[g], soup, options.join_objects), scene);
     scene.center = soup.center;
     scene.diameter = soup.diameter;
     scene.unit = options.unit;
@@ -157,7 +179,8 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
     compact_vertices(scene);
     sort_scene(scene);
     add_views(raw, scene);
-    scene.closed = is_closed(scene);
+    require_uncovered_light(raw, scene, options);
+    scene.contact_lines = find_contact_lines(scene, soup.snap);
     return loaded;
 }
 

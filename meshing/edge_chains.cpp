@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <tuple>
 
 namespace patchlight {
 
@@ -14,9 +13,10 @@ namespace {
 
 using Edge = EdgeChains::Edge;
 
-std::vector<Edge> all_edges(const std::vector<SoupFace>& faces)
+std::vector<Edge> all_edges(const std::vector<SoupFace>& faces, const std::vector<CrossingSegment>& crossings)
 {
     std::vector<Edge> edges;
+    for (const CrossingSegment& segment : crossings) edges.push_back(segment.ends);
     for (const SoupFace& face : faces) {
         for (std::size_t k = 0; k < face.loop.size(); ++k) {
             edges.push_back(std::minmax(face.loop[k], face.loop[(k + 1) % face.loop.size()]));
@@ -60,37 +60,27 @@ struct Division {
     auto operator<=>(const Division&) const = default;
 };
 
-/// Appends crossing points, welded with the vertices and with one another, in an order that geometry decides.
+/// Appends crossing points to the vertices.
 std::vector<Division> divide_at_crossings(const std::vector<Edge>& edges, const std::vector<Box3>& boxes,
                                           PolygonSoup& soup)
 {
-    struct Found {
-        Vec3 point;
-        std::uint32_t first, second;
-    };
-    std::vector<Found> found;
+    std::vector<Vec3> points;
+    std::vector<std::array<std::uint32_t, 2>> crossed;
     touching_pairs(boxes, [&](std::uint32_t i, std::uint32_t k) {
         const Edge &a = edges[i], &b = edges[k];
         if (a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second) return false;
-        if (const auto point = crossing(a, b, soup.vertices, soup.snap)) found.push_back({*point, i, k});
+        if (const auto point = crossing(a, b, soup.vertices, soup.snap)) {
+            points.push_back(*point);
+            crossed.push_back({i, k});
+        }
         return false;
     });
-    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-        return std::tie(a.point.x, a.point.y, a.point.z, a.first, a.second) <
-               std::tie(b.point.x, b.point.y, b.point.z, b.first, b.second);
-    });
-    VertexGrid grid(soup.snap);
-    for (std::uint32_t v = 0; v < soup.vertices.size(); ++v) grid.insert(soup.vertices[v], v);
+    const std::vector<std::uint32_t> welded = weld_points(points, soup.snap, soup.vertices);
     std::vector<Division> divisions;
-    for (const Found& f : found) {
-        auto vertex = grid.find(f.point);
-        if (!vertex) {
-            vertex = static_cast<std::uint32_t>(soup.vertices.size());
-            soup.vertices.push_back(f.point);
-            grid.insert(f.point, *vertex);
-        }
-        for (const std::uint32_t edge : {f.first, f.second}) {
-            if (edges[edge].first != *vertex && edges[edge].second != *vertex) divisions.push_back({edge, *vertex});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        for (const std::uint32_t edge : crossed[k]) {
+            if (edges[edge].first != welded[k] && edges[edge].second != welded[k])
+                divisions.push_back({edge, welded[k]});
         }
     }
     return divisions;
@@ -123,9 +113,11 @@ std::vector<Division> divide_at_vertices(const std::vector<Edge>& edges, const s
 
 }  // namespace
 
-EdgeChains::EdgeChains(PolygonSoup& soup, SceneReport& report) : edges_(all_edges(soup.faces))
+EdgeChains::EdgeChains(PolygonSoup& soup, SceneReport& report)
 {
     const auto input_vertices = static_cast<std::uint32_t>(soup.vertices.size());
+    crossings_ = crossing_segments(soup, report);
+    edges_ = all_edges(soup.faces, crossings_);
     const std::vector<Box3> boxes = edge_boxes(edges_, soup.vertices, soup.snap);
     std::vector<Division> divisions = divide_at_crossings(edges_, boxes, soup);
     const std::vector<Division> on_edges = divide_at_vertices(edges_, boxes, soup);

@@ -69,7 +69,8 @@ PlaneGroup grow_group(std::uint32_t seed, std::uint32_t id, const PolygonSoup& s
     return group;
 }
 
-/// The groups each vertex lies in the plane of: by its own faces, or because it touches a face's box there.
+/// The groups each vertex lies in the plane of: by its own faces, where faces cross, or because it touches a face's
+/// box there.
 std::vector<std::vector<std::uint32_t>> groups_of_vertices(const PolygonSoup& soup, const EdgeChains& chains,
                                                            const std::vector<Box3>& boxes,
                                                            const std::vector<PlaneGroup>& groups,
@@ -87,6 +88,11 @@ std::vector<std::vector<std::uint32_t>> groups_of_vertices(const PolygonSoup& so
     });
     for (std::uint32_t face = 0; face < soup.faces.size(); ++face) {
         for (const std::uint32_t v : chains.split_loop(soup.faces[face])) result[v].push_back(group_of[face]);
+    }
+    for (const CrossingSegment& segment : chains.crossings()) {
+        for (const std::uint32_t v : chains.chain(chains.index_of(segment.ends.first, segment.ends.second))) {
+            for (const std::uint32_t face : segment.faces) result[v].push_back(group_of[face]);
+        }
     }
     for (auto& list : result) {
         std::sort(list.begin(), list.end());

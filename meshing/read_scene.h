@@ -38,6 +38,7 @@ struct SceneReport {
     std::size_t opposed_pairs = 0;           ///< triangles of the arrangement with a surface on both sides
     std::size_t needles = 0;                 ///< faces more than 1e5 times longer than wide
     std::size_t crossing_faces = 0;          ///< pairs of faces that pierce each other
+    double covered_area = 0;                 ///< m², from where every ray meets nothing but backs: no surface is there
     double snap_distance = 0;                ///< metres
     std::vector<std::string> empty_objects;  ///< names whose faces all have no area
     std::vector<std::string> warnings;       ///< whole sentences, in a fixed order

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "meshing/ids.h"
+#include "meshing/surface_line.h"
 #include "meshing/vectors.h"
 
 #include <array>
@@ -34,6 +35,7 @@ struct PlaneFrame {
 };
 
 /// A planar polygon of one material, holes allowed, one-sided: its front emits and reflects, its back is black.
+/// What a standing solid covers of it is a hole.
 struct Surface {
     MaterialId material;
     ObjectId object;  ///< of the largest face it was joined from
@@ -46,7 +48,7 @@ struct Surface {
 
 /// A triangle of the ray caster's triangulation. It contains all T-vertices and contact segments, so that
 /// surfaces that touch share vertices. `front` is the surface whose normal is the triangle's counter-clockwise
-/// one, `back` the one that faces the other way; either may be invalid, which is a black side.
+/// one, `back` the one that faces the other way; either or both may be invalid, which is a black side.
 struct SceneTriangle {
     std::array<std::uint32_t, 3> vertices{};
     SurfaceId front;
@@ -73,6 +75,7 @@ struct Scene {
     std::vector<Vec3> vertices;
     std::vector<SceneTriangle> triangles;
     std::vector<Surface> surfaces;
+    std::vector<SurfaceLine> contact_lines;  ///< see find_contact_lines(); stored runs don't keep them
     std::vector<Material> materials;
     std::vector<std::string> objects;
     std::vector<View> views;

@@ -4,8 +4,11 @@
 
 #include <glm/common.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -56,5 +59,28 @@ private:
     double distance_;
     std::unordered_multimap<std::uint64_t, Entry> cells_;
 };
+
+/// Welds points with the vertices within a distance, and with one another, in an order that geometry decides. Appends
+/// those that are new to `vertices`; gives each point's vertex.
+inline std::vector<std::uint32_t> weld_points(const std::vector<Vec3>& points, double distance,
+                                              std::vector<Vec3>& vertices)
+{
+    std::vector<std::uint32_t> order(points.size()), welded(points.size());
+    if (points.empty()) return welded;
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(points[a].x, points[a].y, points[a].z) < std::tie(points[b].x, points[b].y, points[b].z);
+    });
+    VertexGrid grid(distance);
+    for (std::uint32_t v = 0; v < vertices.size(); ++v) grid.insert(vertices[v], v);
+    for (const std::uint32_t i : order) {
+        const auto known = grid.find(points[i]);
+        welded[i] = known ? *known : static_cast<std::uint32_t>(vertices.size());
+        if (known) continue;
+        vertices.push_back(points[i]);
+        grid.insert(points[i], welded[i]);
+    }
+    return welded;
+}
 
 }  // namespace patchlight

@@ -186,7 +186,7 @@ ObjectId object_named(const std::string& name, const SceneInput& input)
     }
     if (std::ranges::none_of(scene.surfaces, [&](const Surface& s) { return s.object == id; })) {
         throw SceneError("zeroarea", fmt::format("{}: object \"{}\" has no surface of its own: faces of other objects "
-                                                 "lie on all of it; take one of them away",
+                                                 "lie on all of it, or it is covered; take one of them away",
                                                  scene.name, name));
     }
     return id;

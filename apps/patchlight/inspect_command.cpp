@@ -86,6 +86,7 @@ Json inspection(const SceneInput& input, const FirstHits& hits, const std::vecto
             {"bounding_box", box_of(scene)},
             {"snap_distance", input.report.snap_distance},
             {"counts", counts_of(input.report)},
+            {"covered_area", input.report.covered_area},
             {"materials", materials_of(scene)},
             {"views", views},
             {"first_hits",
@@ -122,6 +123,7 @@ std::string table_of(const Json& j, const SceneInput& input)
     for (const auto& [name, count] : j["counts"].items()) {
         out += fmt::format("  {:<20} {}\n", name, count.get<std::size_t>());
     }
+    out += fmt::format("  {:<20} {:.6g} m2\n", "covered_area", j["covered_area"].get<double>());
     const Json& hits = j["first_hits"];
     out += fmt::format("\nrays from the fronts meet first: black backs {:.2f} %, nothing {:.2f} %\n"
                        "emitted power: black backs {:.2f} %, nothing {:.2f} %\n",

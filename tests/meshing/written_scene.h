@@ -96,6 +96,18 @@ inline Polygon rectangle(const Vec3& a, const Vec3& u, const Vec3& v, const std:
     return {{a, a + u, a + u + v, a + v}, material, object};
 }
 
+inline std::vector<Polygon> with(std::vector<Polygon> polygons, const std::vector<Polygon>& more)
+{
+    polygons.insert(polygons.end(), more.begin(), more.end());
+    return polygons;
+}
+
+inline std::vector<Polygon> with(std::vector<Polygon> polygons, const Polygon& more)
+{
+    polygons.push_back(more);
+    return polygons;
+}
+
 /// The six sides of a box, fronts inside or outside.
 inline std::vector<Polygon> box(const Vec3& low, const Vec3& size, bool inside, const std::string& material = "white",
                                 const std::string& object = "box")
@@ -126,6 +138,8 @@ inline std::vector<Polygon> room_with_lamp()
     return room;
 }
 
+inline const Polygon lamp_above = rectangle({-1, -1, 9}, {0, 1, 0}, {1, 0, 0}, "lamp", "lamp");
+
 /// A rotation about no axis in particular.
 inline Vec3 rotated(const Vec3& p)
 {
@@ -155,8 +169,9 @@ inline void expect_sound(const LoadedScene& loaded)
     const Scene& scene = loaded.scene;
     const double snap = loaded.report.snap_distance;
     std::vector<double> areas(scene.surfaces.size(), 0.0);
+    double covered = 0;
     for (const SceneTriangle& t : scene.triangles) {
-        ASSERT_TRUE(t.front.valid() || t.back.valid());
+        covered += t.front.valid() || t.back.valid() ? 0 : triangle_area(scene, t);
         const Vec3& a = scene.vertices[t.vertices[0]];
         const Vec3 n = glm::cross(scene.vertices[t.vertices[1]] - a, scene.vertices[t.vertices[2]] - a);
         for (const SurfaceId side : {t.front, t.back}) {
@@ -168,6 +183,8 @@ inline void expect_sound(const LoadedScene& loaded)
             }
         }
     }
+    EXPECT_LE(covered, loaded.report.covered_area * (1 + 1e-12) + 1e-14 * scene.diameter * scene.diameter)
+        << "only covered triangles are black on both sides";
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
         const Surface& surface = scene.surfaces[s];
         const PlaneFrame& frame = surface.frame;
@@ -191,6 +208,33 @@ inline void expect_sound(const LoadedScene& loaded)
         }
         // Vertices left out of the loops, and seams, may lie the snapping distance off a straight border.
         EXPECT_NEAR(area, surface.area, 4 * snap * perimeter + rounding);
+    }
+}
+
+inline void expect_same_scene(const Scene& a, const Scene& b)
+{
+    EXPECT_EQ(a.vertices, b.vertices);
+    EXPECT_EQ(a.objects, b.objects);
+    ASSERT_EQ(a.triangles.size(), b.triangles.size());
+    for (std::size_t t = 0; t < a.triangles.size(); ++t) {
+        EXPECT_EQ(a.triangles[t].vertices, b.triangles[t].vertices);
+        EXPECT_EQ(a.triangles[t].front, b.triangles[t].front);
+        EXPECT_EQ(a.triangles[t].back, b.triangles[t].back);
+    }
+    ASSERT_EQ(a.surfaces.size(), b.surfaces.size());
+    for (std::size_t s = 0; s < a.surfaces.size(); ++s) {
+        EXPECT_EQ(a.surfaces[s].loops, b.surfaces[s].loops);
+        EXPECT_EQ(a.surfaces[s].material, b.surfaces[s].material);
+        EXPECT_EQ(a.surfaces[s].object, b.surfaces[s].object);
+        EXPECT_EQ(a.surfaces[s].area, b.surfaces[s].area);
+        EXPECT_EQ(a.surfaces[s].frame.origin, b.surfaces[s].frame.origin);
+        EXPECT_EQ(a.surfaces[s].frame.u, b.surfaces[s].frame.u);
+    }
+    ASSERT_EQ(a.contact_lines.size(), b.contact_lines.size());
+    for (std::size_t l = 0; l < a.contact_lines.size(); ++l) {
+        EXPECT_EQ(a.contact_lines[l].surface, b.contact_lines[l].surface);
+        EXPECT_EQ(a.contact_lines[l].start, b.contact_lines[l].start);
+        EXPECT_EQ(a.contact_lines[l].end, b.contact_lines[l].end);
     }
 }
 

@@ -60,7 +60,8 @@ TEST(CornellBox, DirectFactorsOnTheAdaptedMesh)
     for (const Material& m : scene.materials) E = glm::max(E, m.emission);
     for (const DirectFactor& known : direct_factors) {
         const Vec3 p = known.point * scene.unit - scene.center;
-        const Rgb B = verification::radiosity_at(scene, solution.mesh, locator, direct.B, known.point, known.normal);
+        const Rgb B =
+            verification::radiosity_at(scene, solution.mesh, locator, direct.B, known.point, known.normal).value();
         const Rgb rho = [&] {
             for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
                 const PlaneFrame& frame = scene.surfaces[s].frame;

@@ -4,7 +4,7 @@
     python3 tests/verification/measure.py [build/patchlight] [--folder DIR]
 
 Solves, probes the reference's points, compares. Relative L2 as `error` means it, √(Σ|B̃−B|²/Σ|B|²), and relative
-RMS over points and bands, √mean((B̃/B−1)²), where B is above a thousandth of its mean (a covered floor has B = 0).
+RMS over points and bands, √mean((B̃/B−1)²), where B is above a thousandth of its mean (a covered floor has B = 0, and no surface that answers).
 """
 
 import argparse
@@ -42,10 +42,12 @@ def probe(command, run, rows, folder):
         for row in rows:
             file.write(",".join(row[k] for k in ("x", "y", "z", "nx", "ny", "nz")) + "\n")
     out = subprocess.run([command, "probe", run, "--points", points], check=True, stdout=subprocess.PIPE, text=True).stdout
-    return [[float(row[band]) for band in ("Br", "Bg", "Bb")] for row in csv.DictReader(out.splitlines())]
+    return [[row[band] for band in ("Br", "Bg", "Bb")] for row in csv.DictReader(out.splitlines())]
 
 
-def errors(found, known):
+def errors(answers, known):
+    # Where the floor is covered there is no surface to answer.
+    found = [[0.0] * 3 if not any(b) and not any(r) else [float(x) for x in b] for b, r in zip(answers, known)]
     squares = norm = relative = counted = 0
     mean = sum(map(sum, known)) / (3 * len(known))
     for b, r in zip(found, known):
