@@ -265,6 +265,39 @@ TEST(DirectLight, BehindTheSourceIsDark)
     EXPECT_LE(compare.difference.from_brute, 1e-12);
 }
 
+// A sheet that emits from both sides is two sources, back to back; neither sees past the other.
+TEST(DirectLight, ATwoSidedSourceLightsEachSideWithItsOwnSurface)
+{
+    SceneWriter writer;
+    writer.raw().materials.push_back(Material{.name = "sheet", .emission = Rgb(1.0), .two_sided = true});
+    writer.face({{-.5, -.5, 0}, {.5, -.5, 0}, {.5, .5, 0}, {-.5, .5, 0}}, 4);
+    writer.face({{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}});
+    writer.face(turned({{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}));
+    const Scene scene = writer.build();
+    const std::vector<SurfaceId> lights = emitters(scene);
+    ASSERT_EQ(lights.size(), 2U);
+    Comparison compare(scene);
+    for (const double side : {-1.0, 1.0}) {
+        const Vec3 x(0, 0, side);
+        const SurfaceId surface = surface_at(scene, x, {0, 0, -side});
+        for (std::size_t k = 0; k < 2; ++k) {
+            const bool faces = scene.surface(lights[k]).frame.n.z * side > 0;
+            EXPECT_NEAR(compare.factor(x, surface, k), faces ? 0.23945647046077353883 : 0, 1e-15);  // §1
+        }
+    }
+    compare.everywhere(500);
+    EXPECT_LE(compare.difference.from_brute, 1e-14);
+}
+
+TEST(DirectLight, WithoutSourcesThereIsNothing)
+{
+    const Scene scene = scene_of("cornell-box");
+    const DirectLight light(scene, {});
+    EXPECT_EQ(light.source_count(), 0U);
+    DirectLight::Scratch scratch;
+    light.factors(Vec3(0.0), SurfaceId(std::size_t{0}), {}, scratch);
+}
+
 // Half of the light on either side of a wall: at its foot, the side decides.
 TEST(DirectLight, AtTheFootOfAWallTheSideDecides)
 {
