@@ -11,7 +11,7 @@ namespace patchlight {
 
 namespace {
 
-constexpr double least_cell = 1.0 / 256;  // of the scene's diameter
+constexpr double least_cell = 1.0 / 128;  // of the scene's diameter
 
 PlaneRectangle rectangle_around(const Scene& scene, const Surface& surface)
 {
@@ -29,11 +29,10 @@ PlaneRectangle rectangle_around(const Scene& scene, const Surface& surface)
 DirectLight::DirectLight(const Scene& scene, std::span<const SurfaceId> sources)
     : sources_(sources.begin(), sources.end()), blockers_(scene)
 {
+    const std::vector<Facet> facets = facets_of(scene);
     for (std::size_t k = 0; k < sources_.size(); ++k)
-        for (Facet& facet : facets_of(scene, sources_[k])) {
-            const double offset = glm::dot(facet.normal, facet.corners[0]);
-            parts_.push_back({k, std::move(facet), offset});
-        }
+        for (const Facet& facet : std::ranges::equal_range(facets, sources_[k], {}, &Facet::surface))
+            parts_.push_back({k, facet, glm::dot(facet.normal, facet.corners[0])});
     std::vector<std::size_t> reflecting;
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
         Receiver& receiver = receivers_.emplace_back();

@@ -14,8 +14,8 @@ namespace patchlight {
 /// asking the scene's tree at every point. Blockers are found once per surface and convex facet of a source, and then
 /// for cells of the surface (see BlockerCells). All points of a planar surface share their horizon, so that clipping
 /// sources and blockers there is done once, too.
-/// Memory grows with the surfaces that reflect times the sources' facets that they see, and with their area in cells of
-/// 1/256 of the scene's diameter at least.
+/// Time and memory to build grow with the surfaces that reflect times the sources' facets, and with their area in
+/// cells, which aren't made smaller than 1/128 of the scene's diameter.
 class DirectLight {
 public:
     /// Working memory of factors(), one per thread.

@@ -204,10 +204,15 @@ std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight
                                            const AdaptiveOptions& options)
 {
     std::vector<Discontinuity> found;
-    if (!uses_lines(options) || !direct) return found;
+    if (!uses_lines(options)) return found;
+    for (const SurfaceLine& line : scene.contact_lines)
+        if (scene.material_of(line.surface).reflects()) found.push_back({line});
+    if (!direct) return found;
     std::vector<Rgb> exitance;
     for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
-    return measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
+    const auto shadows = measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
+    found.insert(found.end(), shadows.begin(), shadows.end());
+    return found;
 }
 
 RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,

@@ -1,6 +1,6 @@
 // Exact direct light at random points of the reflecting surfaces: prepared (DirectLight), with the scene's tree asked
 // at every point (point_factor), and without any blockers (Lambert's formula alone: the least it can cost), in one run.
-//   direct_light [SCENE.obj [POINTS [UNIT]]]     default: the Cornell box and the gallery; exit 1 if the two differ
+//   direct_light [POINTS [SCENE.obj UNIT]]     default: three scenes of data/; exit 1 if the first two differ
 
 #include "formfactor/direct_light.h"
 #include "formfactor/lambert.h"
@@ -86,7 +86,7 @@ bool measure(const std::string& file, std::size_t count, double unit)
     const Blockers blockers(scene);
     std::vector<std::vector<Facet>> facets;
     for (const SurfaceId s : sources) facets.push_back(facets_of(scene, s));
-    const std::size_t asked = std::min<std::size_t>(count, 20000);
+    const std::size_t asked = count / 20;
     double worst = 0;
     const Stopwatch second;
     for (std::size_t i = 0; i < asked; ++i)
@@ -119,8 +119,8 @@ bool measure(const std::string& file, std::size_t count, double unit)
 
 int run(int argc, char** argv)
 {
-    const std::size_t count = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 200000;
-    if (argc > 1) return measure(argv[1], count, argc > 3 ? std::atof(argv[3]) : 1) ? 0 : 1;
+    const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 200000;
+    if (argc > 3) return measure(argv[2], count, std::atof(argv[3])) ? 0 : 1;
     const std::string scenes = std::string(PATCHLIGHT_DATA) + "/scenes/";
     bool same = true;
     for (const char* name : {"cornell-box", "furniture-room", "gallery"})

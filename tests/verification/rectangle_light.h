@@ -59,6 +59,11 @@ inline void append_unhidden(Loop loop, const Vec3& p, const Loop& blocker, std::
         const Vec3 side = turn * glm::cross(blocker[(k + 1) % blocker.size()] - p, blocker[k] - p);
         inward.emplace_back(side, glm::dot(side, p));
     }
+    for (const auto& [normal, offset] : inward)
+        if (clip(loop, normal, offset).empty()) {
+            pieces.push_back(std::move(loop));  // beside it as a whole: else many blockers leave ever more pieces
+            return;
+        }
     for (const auto& [normal, offset] : inward) {
         if (Loop outside = clip(loop, -normal, -offset); !outside.empty()) pieces.push_back(std::move(outside));
         loop = clip(loop, normal, offset);
