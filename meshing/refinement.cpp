@@ -142,14 +142,14 @@ std::vector<SurfaceTriangulation> with_lines(const Scene& scene, const PatchMesh
 using SurfaceEdges = std::vector<std::vector<std::array<std::uint32_t, 2>>>;
 
 /// The edges to halve, by surface, as many of the first as there is room for: each makes two triangles more at most.
-SurfaceEdges edges_to_bisect(const PatchMesh& mesh, const RefinementPlan& plan, const LinesOfSurface& lines,
+SurfaceEdges edges_to_bisect(const PatchMesh& mesh, const RefinementPlan& plan,
                              const std::vector<SurfaceTriangulation>& pieces, std::size_t room)
 {
     SurfaceEdges edges(pieces.size());
     std::vector<std::set<std::pair<std::uint32_t, std::uint32_t>>> chosen(pieces.size());
     for (const auto& [patch, k] : plan.bisections) {
         const SurfaceId s = mesh.surface(patch);
-        if (!lines[s.value].empty()) continue;
+        if (pieces[s.value].triangles.size() != mesh.patches_of(s).size()) continue;  // lines changed it
         const auto& corners = pieces[s.value].triangles[patch.value - mesh.patches_of(s).first];
         const std::uint32_t a = corners[k], b = corners[(k + 1U) % 3];
         if (room < 2) break;
@@ -183,7 +183,7 @@ Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPla
         lines_of = by_surface(scene, lines);
         pieces = with_lines(scene, mesh, lines_of);
     }
-    const SurfaceEdges edges = edges_to_bisect(mesh, plan, lines_of, pieces, most - std::min(most, count(pieces)));
+    const SurfaceEdges edges = edges_to_bisect(mesh, plan, pieces, most - std::min(most, count(pieces)));
     for_each_surface(scene, [&](SurfaceId s) {
         if (!edges[s.value].empty())
             pieces[s.value] = bisect_edges({scene.surface(s).frame, scene.diameter}, pieces[s.value], edges[s.value]);

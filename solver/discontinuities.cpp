@@ -78,14 +78,31 @@ private:
     std::span<const Rgb> exitance_;
 };
 
-/// Whether the mesh has an edge on the line's middle.
-bool is_in_mesh(const Scene& scene, const PatchMesh& mesh, const SurfaceLine& line)
+/// Whether a line's middle is on an edge, of the mesh or the border: there it can't be told from it.
+bool is_on(const SurfaceLine& line, const Vec2& a, const Vec2& b, double diameter)
 {
     const Vec2 middle = 0.5 * (line.start + line.end);
+    const double t = std::clamp(glm::dot(middle - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+    return glm::distance(middle, a + t * (b - a)) < 2e-5 * diameter;
+}
+
+bool is_in_mesh(const Scene& scene, const PatchMesh& mesh, const SurfaceLine& line)
+{
     return std::ranges::any_of(mesh.lines_of(line.surface), [&](const MeshLine& edge) {
-        const Vec2 a = mesh.plane_position(VertexId(edge.left[0])), b = mesh.plane_position(VertexId(edge.left[1]));
-        const double t = std::clamp(glm::dot(middle - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
-        return glm::distance(middle, a + t * (b - a)) < 2e-5 * scene.diameter;
+        return is_on(line, mesh.plane_position(VertexId(edge.left[0])), mesh.plane_position(VertexId(edge.left[1])),
+                     scene.diameter);
+    });
+}
+
+bool is_on_border(const Scene& scene, const SurfaceLine& line)
+{
+    const Surface& surface = scene.surface(line.surface);
+    return std::ranges::any_of(surface.loops, [&](const auto& loop) {
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            if (is_on(line, surface.frame.to_plane(scene.vertices[loop[i]]),
+                      surface.frame.to_plane(scene.vertices[loop[(i + 1) % loop.size()]]), scene.diameter))
+                return true;
+        return false;
     });
 }
 
@@ -99,7 +116,9 @@ std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& 
     tbb::enumerable_thread_specific<DirectLight::Scratch> scratches;
     tbb::parallel_for(std::size_t{0}, lines.size(),
                       [&](std::size_t i) { found[i] = meter.measure(lines[i], scratches.local()); });
-    std::erase_if(found, [](const Discontinuity& d) { return d.value == 0 && d.slope == 0 && d.second == 0; });
+    std::erase_if(found, [&](const Discontinuity& d) {
+        return (d.value == 0 && d.slope == 0 && d.second == 0) || is_on_border(scene, d.line);
+    });
     return found;
 }
 

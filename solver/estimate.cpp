@@ -56,7 +56,7 @@ std::uint8_t best_edge(const PatchMesh& mesh, PatchId p, std::array<double, 3> s
     const auto c = mesh.corners(p);
     const double longest = mesh.longest_edge(p), most = *std::ranges::max_element(scores);
     for (std::size_t k = 0; k < 3; ++k)
-        scores[k] += (most > 0 ? 0.05 * most : 1.0) *
+        scores[k] += (most > 0 ? 1e-3 * most : 1.0) *
                      glm::distance(mesh.position(c[k]), mesh.position(c[(k + 1) % 3])) / longest;
     return static_cast<std::uint8_t>(std::ranges::max_element(scores) - scores.begin());
 }
