@@ -61,6 +61,14 @@ void count(const PlaneArrangement& plane, SceneReport& report)
     }
 }
 
+/// Whether light can escape from where it is, and where no surface sees another.
+void look_into_regions(std::vector<PlaneArrangement>& planes, const PolygonSoup& soup, LoadedScene& loaded)
+{
+    SpaceRegions regions = regions_of(planes, soup);
+    loaded.scene.closed = is_closed(planes, soup, regions);
+    loaded.report.covered_area = blacken_covered_parts(planes, soup, regions);
+}
+
 void append(PlaneSurfaces plane, Scene& scene)
 {
     const auto first = static_cast<std::uint32_t>(scene.surfaces.size());
@@ -165,9 +173,7 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
         count(planes.back(), report);
     }
     Scene& scene = loaded.scene;
-    SpaceRegions regions = regions_of(planes, soup);
-    scene.closed = is_closed(planes, soup, regions);
-    report.covered_area = blacken_covered_parts(planes, soup, regions);
+    look_into_regions(planes, soup, loaded);
     for (std::size_t g = 0; g < groups.size(); ++g)
         append(join_surfaces(groups[g], planes[g], soup, options.join_objects), scene);
     scene.center = soup.center;

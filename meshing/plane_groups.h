@@ -12,7 +12,8 @@ namespace patchlight {
 struct PlaneGroup {
     PlaneFrame frame;                  ///< n is the front of the largest face
     std::vector<std::uint32_t> faces;  ///< ascending
-    /// Pieces of other faces' edges that lie in the plane, and vertices that touch it: where something stands on it.
+    /// Pieces of other faces' edges that lie in the plane or of lines in which faces cross it, and vertices that touch
+    /// it: where something stands on it or passes through.
     std::vector<EdgeChains::Edge> contact_edges;
     std::vector<std::uint32_t> contact_vertices;
 };

@@ -102,7 +102,7 @@ TEST(ExactRows, TheClosedCornellBoxClosesWithItsBacks)
     EXPECT_GT(counts.partial, counts.facing / 10);
     std::size_t covered = 0;
     for (const PatchId p : mesh.patches()) covered += F.backs[p] > 0.99 ? 1 : 0;
-    EXPECT_GT(covered, 2U) << "there is floor under the blocks";
+    EXPECT_EQ(covered, 0U) << "the floor under the blocks is no surface";
 }
 
 TEST(ExactRows, ReciprocityIsExactAndNothingSeesItself)
@@ -115,7 +115,7 @@ TEST(ExactRows, ReciprocityIsExactAndNothingSeesItself)
             const std::uint32_t j = F.columns[k];
             const double there = mesh.area(PatchId(i)) * F.factors[k];
             const double back = mesh.area(PatchId(j)) * factor(F, j, static_cast<std::uint32_t>(i));
-            ASSERT_NEAR(there, back, 4e-16 * there);  // one division and one product each
+            ASSERT_NEAR(there, back, 4.5e-16 * there);  // one division and one product each: 4 roundings of 2⁻⁵³
             ASSERT_NE(mesh.surface(PatchId(i)), mesh.surface(PatchId(j)));
             ASSERT_GT(F.factors[k], 0) << "what is invisible is not stored";
             ASSERT_LE(F.factors[k], 1);
