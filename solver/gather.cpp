@@ -39,19 +39,25 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
     return result;
 }
 
-Vec3 moved_inside(const Vec3& point, const Vec3& inside, double diameter)
+namespace {
+
+/// Toward `inside` by a part of the way, but by `least` (of the diameter), but never more than a quarter of it.
+Vec3 moved(const Vec3& point, const Vec3& inside, double part, double least, double diameter)
 {
     const Vec3 way = inside - point;
     const double length = glm::length(way);
     if (length == 0) return point;
-    // Single precision knows a place to about 1e-7 of the diameter: at 5e-5 one ray in hundreds passes an edge so
-    // near that it may be taken for a hit on the other side. Never further than a quarter of the way.
-    return point + std::min(0.25, std::max(1e-3, 5e-5 * diameter / length)) * way;
+    return point + std::min(0.25, std::max(part, least * diameter / length)) * way;
 }
+
+}  // namespace
 
 SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter)
 {
-    return {moved_inside(place, inside, diameter), surface, place + 1e-6 * (inside - place)};
+    // Single precision knows a place to about 1e-7 of the diameter: at 5e-5 one ray in hundreds passes an edge so
+    // near that it may be taken for a hit on the other side. Exact light tells places apart that differ by the snap,
+    // 1e-8.
+    return {moved(place, inside, 1e-3, 5e-5, diameter), surface, moved(place, inside, 1e-6, 5e-8, diameter)};
 }
 
 std::vector<SurfacePoint> vertex_points(const Exchange& exchange)

@@ -37,9 +37,6 @@ struct GatheredLight {
 GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
                                 const GatherOptions& options, const WorkMonitor& monitor = {});
 
-/// A point moved off every edge toward `inside`, by a thousandth of the way or what single precision needs.
-Vec3 moved_inside(const Vec3& point, const Vec3& inside, double diameter);
-
 /// A place of a border, moved toward `inside` of its surface: what is there on this side.
 SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter);
 
