@@ -265,6 +265,24 @@ TEST(DirectLight, BehindTheSourceIsDark)
     EXPECT_LE(compare.difference.from_brute, 1e-12);
 }
 
+// On a wall that the light's edge touches: half the hemisphere's share just below, nothing in the light's plane, to
+// which heights below the snapping distance belong.
+TEST(DirectLight, InTheSourcesPlaneItIsDark)
+{
+    SceneWriter writer;
+    writer.face({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+    writer.face(turned({{-.5, -.5, 1}, {.5, -.5, 1}, {.5, 1, 1}, {-.5, 1, 1}}), SceneWriter::lamp);
+    writer.face({{-1, 1, 0}, {1, 1, 0}, {1, 1, 1.2}, {-1, 1, 1.2}});
+    const Scene scene = writer.build();
+    Comparison compare(scene);
+    const auto on_wall = [&](double below) { return Vec3(0, 1, 1 - below) - scene.center; };
+    const SurfaceId wall = surface_at(scene, on_wall(0.2), {0, -1, 0});
+    ASSERT_TRUE(wall.valid());
+    const double snap = Blockers(scene).snap();
+    for (const double below : {-0.1, 0.0, 0.5 * snap}) EXPECT_EQ(compare.factor(on_wall(below), wall, 0), 0) << below;
+    EXPECT_NEAR(compare.factor(on_wall(100 * snap), wall, 0), 0.5, 1e-4);
+}
+
 // A sheet that emits from both sides is two sources, back to back; neither sees past the other.
 TEST(DirectLight, ATwoSidedSourceLightsEachSideWithItsOwnSurface)
 {
