@@ -118,18 +118,19 @@ void Pencil::collect(Part part, Span window, std::vector<PencilCut>& cuts) const
     const auto from_apex = [&](const Vec3& normal, double offset) {
         return FacetTree::HalfSpace{normal, glm::dot(normal, apex_) + offset - snap_ * glm::length(normal)};
     };
-    const std::array<FacetTree::HalfSpace, 5> region{
-        from_apex(n_, 0), from_apex(-n_, 0), from_apex(low, 0), from_apex(high, 0),
-        part == Part::to_base ? from_apex(-sum, -1) : from_apex(sum, 1)};
+    const std::array<FacetTree::HalfSpace, 5> region{from_apex(n_, 0), from_apex(-n_, 0), from_apex(low, 0),
+                                                     from_apex(high, 0),
+                                                     part == Part::to_base ? from_apex(-sum, -1) : from_apex(sum, 1)};
     cuts.clear();
     PencilCut found;
-    tree_->visit(std::span(region).first(part == Part::to_base || part == Part::past_base ? 5 : 4), [&](std::uint32_t f) {
-        if (cut(facets_[f], sign, found)) {
-            found.facet = f;
-            cuts.push_back(found);
-        }
-        return true;
-    });
+    tree_->visit(std::span(region).first(part == Part::to_base || part == Part::past_base ? 5 : 4),
+                 [&](std::uint32_t f) {
+                     if (cut(facets_[f], sign, found)) {
+                         found.facet = f;
+                         cuts.push_back(found);
+                     }
+                     return true;
+                 });
 }
 
 /// The parts of `window` in which no cut of this side reaches `least` in 1/μ: scratch.free.

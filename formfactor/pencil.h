@@ -74,8 +74,7 @@ private:
 
     void collect(Part part, Span window, std::vector<PencilCut>& cuts) const;
     bool cut(const Facet& facet, double sign, PencilCut& result) const;
-    void block(std::span<const PencilCut> cuts, unsigned side, double least, Span window,
-               PencilScratch& scratch) const;
+    void block(std::span<const PencilCut> cuts, unsigned side, double least, Span window, PencilScratch& scratch) const;
     void trace(Part part, Span window, PencilScratch& scratch) const;
     void nearest(Span window, unsigned side, PencilScratch& scratch) const;
     void nearest_between(double from, double to, PencilScratch& scratch) const;

@@ -100,9 +100,8 @@ LineFinder::LineFinder(const Scene& scene, std::span<const SurfaceId> sources, c
     }
     make_unique(edges_);
     make_unique(corners_);
-    tbb::parallel_for(std::size_t{0}, corners_.size(), [&](std::size_t k) {
-        fans_[corners_[k]] = corner_fan(tree_, facets_, at(corners_[k]), snap_);
-    });
+    tbb::parallel_for(std::size_t{0}, corners_.size(),
+                      [&](std::size_t k) { fans_[corners_[k]] = corner_fan(tree_, facets_, at(corners_[k]), snap_); });
     for (const SurfaceId id : sources) {
         const Surface& surface = scene.surface(id);
         Source source{id, surface.frame.n, 0, {}, edges_of(surface)};
@@ -237,9 +236,8 @@ std::vector<SurfaceLine> LineFinder::find(ShadowLineCounts* counts) const
     const std::size_t elements = edges_.size() + corners_.size() + scene_.surfaces.size() + 1;
     std::vector<Lines> found(sources_.size() * elements);
     tbb::enumerable_thread_specific<Work> work;
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
-        find(sources_[k / elements], k % elements, work.local(), found[k]);
-    });
+    tbb::parallel_for(std::size_t{0}, found.size(),
+                      [&](std::size_t k) { find(sources_[k / elements], k % elements, work.local(), found[k]); });
     if (counts != nullptr)
         for (const Work& w : work) {
             counts->pencils += w.counts.pencils;

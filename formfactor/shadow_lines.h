@@ -21,12 +21,12 @@ struct ShadowLineCounts {
 };
 
 /// The lines on surfaces that reflect across which the direct light of the sources breaks off in its first or second
-/// derivative [Heckbert92, LischinskiTampieriGreenberg92]: EV (a source's corner seen past an edge), VE (a source's edge seen
-/// past a corner) and plane (see LineKind; contacts are not among them, nor EEE: the curves where a source's edge is seen
-/// past two skew edges). Each line only where light from the source's corner or edge really arrives: what stands in
-/// between is sorted in the plane of corner and edge, exactly, on heights snapped at 1e-8 of the scene's diameter, so that
-/// what touches the plane from one side hides that side only. Corners and edges are those of the surfaces' loops;
-/// edges between coplanar surfaces and those not on an outline count as hidden by what they belong to.
+/// derivative [Heckbert92, LischinskiTampieriGreenberg92]: EV (a source's corner seen past an edge), VE (a source's
+/// edge seen past a corner) and plane (see LineKind; contacts are not among them, nor EEE: the curves where a source's
+/// edge is seen past two skew edges). Each line only where light from the source's corner or edge really arrives: what
+/// stands in between is sorted in the plane of corner and edge, exactly, on heights snapped at 1e-8 of the scene's
+/// diameter, so that what touches the plane from one side hides that side only. Corners and edges are those of the
+/// surfaces' loops; edges between coplanar surfaces and those not on an outline count as hidden by what they belong to.
 /// Lines that coincide are one (see merged_lines). A few lines may be there across which the light is smooth: where
 /// something else hides just the side that would have changed.
 /// Runs in parallel; the result depends on neither threads nor the order of surfaces.

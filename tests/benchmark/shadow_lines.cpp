@@ -31,8 +31,9 @@ void measure(const char* file)
     for (const SurfaceLine& l : lines) ++by_kind[static_cast<std::size_t>(l.kind)];
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    std::printf("%-24s %8zu %8zu %7zu %10zu %10zu %8zu", file + std::max<long>(0, static_cast<long>(std::string_view(file).size()) - 24),
-                scene.surfaces.size(), edges, sources.size(), counts.pencils, counts.receivers, lines.size());
+    std::printf("%-24s %8zu %8zu %7zu %10zu %10zu %8zu",
+                file + std::max<long>(0, static_cast<long>(std::string_view(file).size()) - 24), scene.surfaces.size(),
+                edges, sources.size(), counts.pencils, counts.receivers, lines.size());
     for (const LineKind kind : {LineKind::ev, LineKind::ve, LineKind::plane})
         std::printf(" %7zu", by_kind[static_cast<std::size_t>(kind)]);
     std::printf(" %8.2f %8ld %9.3f %9.3f\n", seconds, usage.ru_maxrss / 1024,
@@ -45,8 +46,9 @@ void measure(const char* file)
 
 int main(int argc, char** argv)
 {
-    std::printf("%-24s %8s %8s %7s %10s %10s %8s %7s %7s %7s %8s %8s %9s %9s\n", "scene", "surfaces", "edges", "sources",
-                "pencils", "receivers", "lines", "EV", "VE", "plane", "seconds", "MiB", "us/pencil", "us/recv");
+    std::printf("%-24s %8s %8s %7s %10s %10s %8s %7s %7s %7s %8s %8s %9s %9s\n", "scene", "surfaces", "edges",
+                "sources", "pencils", "receivers", "lines", "EV", "VE", "plane", "seconds", "MiB", "us/pencil",
+                "us/recv");
     for (int k = 1; k < argc; ++k) patchlight::measure(argv[k]);
     return 0;
 }
