@@ -51,7 +51,7 @@ CornerFan corner_fan(const FacetTree& tree, std::span<const Facet> facets, const
     return fan;
 }
 
-bool CornerFan::covers(const Vec3& d) const
+bool CornerFan::has_corner(const Vec3& d) const
 {
     const Vec3 axis = glm::normalize(d);
     const Vec3 other = std::abs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
@@ -66,12 +66,15 @@ bool CornerFan::covers(const Vec3& d) const
     }
     if (arcs.empty()) return false;
     std::ranges::sort(arcs);
+    std::vector<double> gaps;
     double until = arcs.front().second;
     for (const auto& [from, to] : arcs) {
-        if (from > until + slack) return false;
+        if (from > until + slack) gaps.push_back(from - until);
         until = std::max(until, to);
     }
-    return until >= arcs.front().first + full - slack;
+    const double last = arcs.front().first + full - until;
+    if (last > slack) gaps.push_back(last);
+    return gaps.size() > 1 || (gaps.size() == 1 && std::abs(gaps[0] - std::numbers::pi) > slack);
 }
 
 }  // namespace patchlight

@@ -13,9 +13,9 @@ struct CornerFan {
     std::vector<std::array<Vec3, 2>> sectors;  ///< directions from the point, less than 180° apart
     std::vector<Vec3> normals;                 ///< of the facets
 
-    /// Whether a ray through the point along d passes one of the facets however it is shifted a little sideways: then
-    /// the point isn't on the outline of what stands around it.
-    bool covers(const Vec3& d) const;
+    /// Whether what stands around the point, seen along d, has a corner there. Not so where it hides all around, leaves a
+    /// straight edge, or nothing of it is seen but edge on.
+    bool has_corner(const Vec3& d) const;
 };
 
 /// Heights and distances up to `snap` (m) are nothing.

@@ -168,6 +168,13 @@ void Pencil::opposite(Span window, PencilScratch& scratch) const
     trace(Part::past_apex, window, scratch);
 }
 
+void Pencil::backward(Span window, PencilScratch& scratch) const
+{
+    scratch.hits.clear();
+    for (std::vector<Span>& free : scratch.free) free.assign({window});
+    trace(Part::past_apex, window, scratch);
+}
+
 void Pencil::outward(Span window, PencilScratch& scratch) const
 {
     scratch.hits.clear();

@@ -55,6 +55,8 @@ public:
     void beyond(Span window, PencilScratch& scratch) const;
     /// Light from the base beyond the apex.
     void opposite(Span window, PencilScratch& scratch) const;
+    /// What is first met from the apex away from the base, on either side of the plane.
+    void backward(Span window, PencilScratch& scratch) const;
     /// Light from the apex just above the plane, wherever the base is.
     void outward(Span window, PencilScratch& scratch) const;
 

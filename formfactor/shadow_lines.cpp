@@ -39,18 +39,29 @@ void make_unique(std::vector<T>& values)
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+/// For the tree, which asks for nothing but corners.
+std::vector<Facet> as_facets(const Scene& scene, const std::vector<Edge>& edges)
+{
+    std::vector<Facet> result(edges.size());
+    for (std::size_t k = 0; k < edges.size(); ++k)
+        result[k].corners = {scene.vertices[edges[k][0]], scene.vertices[edges[k][1]]};
+    return result;
+}
+
 struct Source {
     SurfaceId surface;
     Vec3 normal{0.0};
     double offset = 0;
     std::vector<std::uint32_t> corners;
     std::vector<Edge> edges;
+    std::vector<Facet> facets;
 };
 
 /// Working memory of one thread.
 struct Work {
     PencilScratch pencil;
     std::vector<double> stops;
+    std::vector<Span> outline, lit;
     ShadowLineCounts counts;
 };
 
@@ -73,6 +84,10 @@ private:
                    Lines& lines) const;
     void past_corner(const Source& source, std::uint32_t apex, const Segment& base, LineKind kind, Work& work,
                      Lines& lines) const;
+    void outline(const Pencil& pencil, const CornerFan& fan, Span window, Work& work) const;
+    void past_corner_and_edges(const Source& source, std::uint32_t vertex, Work& work, Lines& lines) const;
+    void past_both(const Source& source, const Vec3& apex, const CornerFan& fan, const Segment& base, bool before,
+                   Work& work, Lines& lines) const;
     void source_plane(const Source& source, const Vec3& apex, Work& work, Lines& lines) const;
     void surface_plane(const Source& source, SurfaceId surface, Work& work, Lines& lines) const;
     void add_hits(const Pencil& pencil, const Vec3& apex, LineKind kind, Work& work, Lines& lines) const;
@@ -83,6 +98,7 @@ private:
     double snap_;
     std::vector<Facet> facets_;
     FacetTree tree_;
+    FacetTree edge_tree_;
     std::vector<Source> sources_;
     std::vector<Edge> edges_;
     std::vector<std::uint32_t> corners_;
@@ -91,20 +107,23 @@ private:
 
 LineFinder::LineFinder(const Scene& scene, std::span<const SurfaceId> sources, const ShadowLineOptions& options)
     : scene_(scene), options_(options), snap_(relative_snap * scene.diameter), facets_(facets_of(scene)),
-      tree_(facets_), fans_(scene.vertices.size())
+      tree_(facets_), edge_tree_({}), fans_(scene.vertices.size())
 {
     for (const Surface& surface : scene.surfaces) {
         const std::vector<Edge> edges = edges_of(surface);
         edges_.insert(edges_.end(), edges.begin(), edges.end());
-        for (const auto& loop : surface.loops) corners_.insert(corners_.end(), loop.begin(), loop.end());
     }
+    // Of the triangulation: it has the points, too, in which an edge pierces or touches a surface.
+    for (const SceneTriangle& t : scene.triangles)
+        corners_.insert(corners_.end(), t.vertices.begin(), t.vertices.end());
     make_unique(edges_);
     make_unique(corners_);
+    edge_tree_ = FacetTree(as_facets(scene, edges_));
     tbb::parallel_for(std::size_t{0}, corners_.size(),
                       [&](std::size_t k) { fans_[corners_[k]] = corner_fan(tree_, facets_, at(corners_[k]), snap_); });
     for (const SurfaceId id : sources) {
         const Surface& surface = scene.surface(id);
-        Source source{id, surface.frame.n, 0, {}, edges_of(surface)};
+        Source source{id, surface.frame.n, 0, {}, edges_of(surface), facets_of(scene, id)};
         for (const auto& loop : surface.loops) source.corners.insert(source.corners.end(), loop.begin(), loop.end());
         make_unique(source.corners);
         source.offset = glm::dot(source.normal, at(source.corners[0]));
@@ -151,18 +170,85 @@ void LineFinder::past_corner(const Source& source, std::uint32_t vertex, const S
     const Pencil pencil(tree_, facets_, apex, base, snap_);
     if (!pencil.valid()) return;
     ++work.counts.pencils;
-    const CornerFan& fan = fans_[vertex];
-    work.stops.assign({0, 1});
+    outline(pencil, fans_[vertex], {0, 1}, work);
+    for (const Span& part : work.outline) {
+        pencil.opposite(part, work.pencil);
+        add_hits(pencil, apex, kind, work, lines);
+    }
+}
+
+/// The parts of a window whose rays pass a corner of what stands around the apex.
+void LineFinder::outline(const Pencil& pencil, const CornerFan& fan, Span window, Work& work) const
+{
+    work.outline.clear();
+    work.stops.assign({window.from, window.to});
     for (const Vec3& normal : fan.normals) {
         const double t = pencil.parameter_in(normal);
-        if (t > 0 && t < 1) work.stops.push_back(t);
+        if (t > window.from && t < window.to) work.stops.push_back(t);
     }
     std::ranges::sort(work.stops);
     for (std::size_t k = 0; k + 1 < work.stops.size(); ++k) {
-        const double from = work.stops[k], to = work.stops[k + 1];
-        if (!(to > from) || fan.covers(pencil.direction(0.5 * (from + to)))) continue;
-        pencil.opposite({from, to}, work.pencil);
-        add_hits(pencil, apex, kind, work, lines);
+        const Span part{work.stops[k], work.stops[k + 1]};
+        if (!(part.to > part.from) || !fan.has_corner(pencil.direction(0.5 * (part.from + part.to)))) continue;
+        if (!work.outline.empty() && work.outline.back().to == part.from)
+            work.outline.back().to = part.to;
+        else
+            work.outline.push_back(part);
+    }
+}
+
+/// Where the source's light past a corner passes an edge, too, before or after.
+void LineFinder::past_corner_and_edges(const Source& source, std::uint32_t vertex, Work& work, Lines& lines) const
+{
+    const Vec3& apex = at(vertex);
+    if (above(source, apex) <= 0) return;
+    const CornerFan& fan = fans_[vertex];
+    if (std::ranges::none_of(source.corners, [&](std::uint32_t c) { return fan.has_corner(apex - at(c)); })) return;
+    for (const Facet& facet : source.facets)
+        for (const double sign : {1.0, -1.0}) {
+            // Towards the source within the cone over it, and away from it in the opposite one.
+            std::vector<FacetTree::HalfSpace> cone;
+            if (sign > 0) cone.push_back({source.normal, source.offset + snap_});
+            for (std::size_t k = 0; k < facet.corners.size(); ++k) {
+                const Vec3 m = -sign * glm::cross(facet.corners[k] - apex,
+                                                  facet.corners[(k + 1) % facet.corners.size()] - apex);
+                cone.push_back({m, glm::dot(m, apex)});
+            }
+            edge_tree_.visit(cone, [&](std::uint32_t e) {
+                const Segment base{at(edges_[e][0]), at(edges_[e][1])};
+                const auto beyond = [&](const FacetTree::HalfSpace& h) {
+                    return glm::dot(h.normal, base[0]) <= h.offset && glm::dot(h.normal, base[1]) <= h.offset;
+                };
+                if (edges_[e][0] != vertex && edges_[e][1] != vertex && std::ranges::none_of(cone, beyond))
+                    past_both(source, apex, fan, base, sign > 0, work, lines);
+                return true;
+            });
+        }
+}
+
+/// The same for one edge, `before` the corner (on the source's side) or after it.
+void LineFinder::past_both(const Source& source, const Vec3& apex, const CornerFan& fan, const Segment& base,
+                           bool before, Work& work, Lines& lines) const
+{
+    const Pencil pencil(tree_, facets_, apex, base, snap_);
+    if (!pencil.valid()) return;
+    ++work.counts.pencils;
+    if (before)
+        pencil.beyond({0, 1}, work.pencil);
+    else
+        pencil.backward({0, 1}, work.pencil);
+    work.lit.clear();
+    for (const PencilHit& hit : work.pencil.hits)
+        if (facets_[hit.facet].surface == source.surface) work.lit.push_back(hit.t);
+    for (const Span& lit : work.lit) {
+        outline(pencil, fan, lit, work);
+        for (const Span& part : work.outline) {
+            if (before)
+                pencil.backward(part, work.pencil);
+            else
+                pencil.beyond(part, work.pencil);
+            add_hits(pencil, apex, LineKind::ve, work, lines);
+        }
     }
 }
 
@@ -223,6 +309,7 @@ void LineFinder::find(const Source& source, std::size_t element, Work& work, Lin
     if (element < corners_.size()) {
         for (const Edge& e : source.edges)
             past_corner(source, corners_[element], {at(e[0]), at(e[1])}, LineKind::ve, work, lines);
+        if (options_.blockers) past_corner_and_edges(source, corners_[element], work, lines);
         return;
     }
     if (!options_.planes) return;

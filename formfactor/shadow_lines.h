@@ -12,6 +12,7 @@ namespace patchlight {
 /// Which lines are looked for, besides the EV and VE ones.
 struct ShadowLineOptions {
     bool planes = true;  ///< where the plane of a source, or of a surface seen edge on from a source, crosses others
+    bool blockers = true;  ///< where a blocker's corner passes another's edge in front of a source
 };
 
 /// How much there was to do.

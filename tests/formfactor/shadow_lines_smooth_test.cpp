@@ -66,7 +66,11 @@ Corners random_room(std::uint64_t seed, int things)
     place(light, corner, along_axes ? 0 : between(0, std::numbers::pi));
     result.insert(result.end(), light.begin(), light.end());
     for (int k = 0; k < things; ++k) {
-        const Corners thing = random_thing(random, along_axes);
+        Corners thing = random_thing(random, along_axes);
+        // Several lie in layers: they don't pierce each other.
+        for (testing::Polygon& polygon : thing)
+            for (Vec3& p : polygon.corners)
+                if (things > 1) p.z = 0.22 * k + 0.28 * p.z;
         result.insert(result.end(), thing.begin(), thing.end());
     }
     return result;
@@ -84,6 +88,8 @@ public:
         PointScratch scratch;
         return point_factor(blockers_, frame_.lift(q), frame_.n, lamp_, scratch);
     }
+
+    Vec3 lift(const Vec2& q) const { return frame_.lift(q); }
 
 private:
     const Blockers& blockers_;
@@ -133,27 +139,86 @@ std::vector<double> crossings(const std::vector<SurfaceLine>& lines, SurfaceId s
     return result;
 }
 
-/// Edges of others in a surface's plane: where they stand on it its light jumps.
+/// Where others stand on a surface or pierce it, and its light jumps: edges of the triangulation in its plane.
 std::vector<SurfaceLine> contacts(const Scene& scene, SurfaceId on)
 {
     std::vector<SurfaceLine> result;
     const PlaneFrame& frame = scene.surface(on).frame;
-    for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
-        for (const auto& loop : scene.surfaces[s].loops)
-            for (std::size_t k = 0; k < loop.size(); ++k) {
-                const Vec3 &p = scene.vertices[loop[k]], &q = scene.vertices[loop[(k + 1) % loop.size()]];
-                const auto height = [&](const Vec3& x) { return std::abs(glm::dot(frame.n, x - frame.origin)); };
-                if (s != on.value && height(p) < 1e-7 && height(q) < 1e-7)
-                    result.push_back({on, LineKind::contact, frame.to_plane(p), frame.to_plane(q)});
-            }
+    const auto height = [&](std::uint32_t v) { return std::abs(glm::dot(frame.n, scene.vertices[v] - frame.origin)); };
+    for (const SceneTriangle& t : scene.triangles)
+        for (std::size_t k = 0; t.front != on && t.back != on && k < 3; ++k) {
+            const std::uint32_t p = t.vertices[k], q = t.vertices[(k + 1) % 3];
+            if (height(p) < 1e-7 && height(q) < 1e-7)
+                result.push_back({on, LineKind::contact, frame.to_plane(scene.vertices[p]),
+                                  frame.to_plane(scene.vertices[q])});
+        }
     return result;
 }
+
+/// Whether two skew edges of blockers and an edge of the lamp come into line between two points: EEE, not looked for.
+class ThreeEdges {
+public:
+    ThreeEdges(const Scene& scene, SurfaceId lamp)
+    {
+        for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+            for (const auto& loop : scene.surfaces[s].loops)
+                for (std::size_t k = 0; k < loop.size(); ++k)
+                    (s == lamp.value ? lamp_ : others_)
+                        .push_back({scene.vertices[loop[k]], scene.vertices[loop[(k + 1) % loop.size()]]});
+    }
+    /// Two edges of blockers of one plane, one seen to pass the other all along.
+    bool slit_between(const Vec3& from, const Vec3& to) const
+    {
+        const auto sides = [](const Vec3& q, const Edge& a, const Edge& b) {
+            const Vec3 n = glm::cross(a[0] - q, a[1] - q);
+            return std::pair(glm::dot(n, b[0] - q), glm::dot(n, b[1] - q));
+        };
+        for (const Edge& a : others_)
+            for (const Edge& b : others_) {
+                const auto [p0, p1] = sides(from, a, b);
+                const auto [q0, q1] = sides(to, a, b);
+                if (p0 < 0 && p1 < 0 && q0 > 0 && q1 > 0) return true;
+            }
+        return false;
+    }
+    bool meet_between(const Vec3& from, const Vec3& to) const
+    {
+        for (const Edge& s : lamp_) {
+            std::vector<std::array<double, 2>> places;  // on s, seen from both points past each edge
+            for (const Edge& e : others_) {
+                const std::array<double, 2> t{place(from, e, s), place(to, e, s)};
+                if (t[0] >= 0 && t[1] >= 0) places.push_back(t);
+            }
+            for (const auto& a : places)
+                for (const auto& b : places)
+                    if (a[0] < b[0] && a[1] > b[1]) return true;
+        }
+        return false;
+    }
+
+private:
+    using Edge = std::array<Vec3, 2>;
+
+    /// Where s is seen past e from q, in [0, 1], or −1.
+    static double place(const Vec3& q, const Edge& e, const Edge& s)
+    {
+        const Vec3 n = glm::cross(e[0] - q, e[1] - q);
+        const double h0 = glm::dot(n, s[0] - q), h1 = glm::dot(n, s[1] - q);
+        if ((h0 < 0) == (h1 < 0)) return -1;
+        const double t = h0 / (h0 - h1);
+        const Vec3 ray = s[0] + t * (s[1] - s[0]) - q, m = glm::cross(n, ray);
+        return glm::dot(m, e[0] - q) * glm::dot(m, e[1] - q) <= 0 ? t : -1;
+    }
+    std::vector<Edge> lamp_, others_;
+};
 
 /// Found lines along probes, beside breaks of the exact light.
 struct Tally {
     std::size_t crossed = 0;      ///< lines
     std::size_t silent = 0;       ///< across which nothing breaks
-    std::size_t unexplained = 0;  ///< breaks where there is no line
+    std::size_t three_edges = 0;  ///< breaks without a line where three edges meet
+    std::size_t slits = 0;        ///< where two edges in one plane pass each other
+    std::size_t unexplained = 0;  ///< breaks without any of these
 };
 
 constexpr int steps = 2000;  ///< of a probe
@@ -161,7 +226,7 @@ constexpr int steps = 2000;  ///< of a probe
 /// Walks along a probe. A break is a jump in differences over a step of more than 2 % of the most light there is in
 /// the scene's unit; where none is known, one that doesn't vanish as the steps do: a smooth function's go with h².
 void walk(const SurfaceLight& light, const Vec2& from, const Vec2& to, const std::vector<double>& lines,
-          const std::vector<double>& contacts, Tally& tally)
+          const std::vector<double>& contacts, const ThreeEdges& three_edges, Tally& tally)
 {
     const Vec2 step = (to - from) / double(steps);
     const double h = glm::length(step);
@@ -183,10 +248,19 @@ void walk(const SurfaceLight& light, const Vec2& from, const Vec2& to, const std
         explained = explained || std::ranges::any_of(known, [](double c) { return std::abs(c) <= 3.01; });
         if (explained || k <= last + 6) continue;
         if (jump_near(light, from + double(k) * step, step, known) < J / 4) continue;
+        last = k;
+        const auto place = [&](double at) { return light.lift(from + at * step); };
+        if (three_edges.meet_between(place(k - 3.6), place(k + 3.6))) {
+            ++tally.three_edges;
+            continue;
+        }
+        if (three_edges.slit_between(place(k - 3.6), place(k + 3.6))) {
+            ++tally.slits;
+            continue;
+        }
         ++tally.unexplained;
         if (getenv("VERB")) { double near = 1e9; for (double c : known) if (std::abs(c) < std::abs(near)) near = c;
         std::printf("  k %d J %.3g fine %.3g f %.3g most %.3g h %.3g near %.2f at (%.6f %.6f)\n", k, J, jump_near(light, from + double(k) * step, step, known), f[k], least / .02, h, near, (from+double(k)*step).x, (from+double(k)*step).y); }
-        last = k;
     }
     for (std::size_t c = 0; c < lines.size(); ++c) {
         if (lines[c] * steps < 3 || lines[c] * steps > steps - 4) continue;
@@ -203,6 +277,7 @@ Tally walk_room(std::uint64_t seed, int things)
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
         if (scene.material_of(SurfaceId(s)).emits()) lamp = SurfaceId(s);
     const std::vector<SurfaceLine> lines = shadow_lines(scene, std::array{lamp});
+    const ThreeEdges three_edges(scene, lamp);
     RandomNumbers random(seed, 0x9c0be);
     Tally tally;
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
@@ -220,7 +295,7 @@ Tally walk_room(std::uint64_t seed, int things)
             };
             const std::size_t side = random.below(4);
             const Vec2 from = point(side), to = point(side + 1 + random.below(3));
-            walk(light, from, to, crossings(lines, id, from, to), crossings(contact, id, from, to), tally);
+            walk(light, from, to, crossings(lines, id, from, to), crossings(contact, id, from, to), three_edges, tally);
         }
     }
     return tally;
@@ -235,9 +310,11 @@ Tally walk_rooms(std::uint64_t rooms, int things)
         if (tally.unexplained + tally.silent > 0) std::printf("seed %d unexplained %zu silent %zu\n", int(seed), tally.unexplained, tally.silent);
         sum.crossed += tally.crossed;
         sum.silent += tally.silent;
+        sum.three_edges += tally.three_edges;
+        sum.slits += tally.slits;
         sum.unexplained += tally.unexplained;
     }
-    std::printf("crossed %zu silent %zu unexplained %zu\n", sum.crossed, sum.silent, sum.unexplained);
+    std::printf("crossed %zu silent %zu three %zu slits %zu unexplained %zu\n", sum.crossed, sum.silent, sum.three_edges, sum.slits, sum.unexplained);
     return sum;
 }
 
