@@ -4,6 +4,17 @@
 
 namespace patchlight {
 
+namespace {
+
+/// Of the plane through a and that end of b which is further off a's line.
+Vec3 normal_of(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b)
+{
+    const Vec3 p = glm::cross(a[1] - a[0], b[0] - a[0]), q = glm::cross(a[1] - a[0], b[1] - a[0]);
+    return glm::dot(p, p) > glm::dot(q, q) ? p : q;
+}
+
+}  // namespace
+
 /// Where the source's own plane meets others, as far as its corners see it.
 void ShadowLineFinder::source_plane(const Source& source, const Vec3& apex, Work& work, Lines& lines) const
 {
@@ -27,7 +38,7 @@ void ShadowLineFinder::surface_plane(const Source& source, SurfaceId id, Work& w
     if (std::ranges::none_of(surface.loops[0], [&](std::uint32_t v) { return above(source, at(v)) > 0; })) return;
     for (const Segment& chord : chords(source, surface.frame.n, surface.frame.origin)) {
         for (const Edge& e : edges_of(surface))
-            for (const Vec3& end : chord) past_edge(source, end, {at(e[0]), at(e[1])}, LineKind::plane, work, lines);
+            for (const Vec3& end : along(chord)) past_edge(source, end, {at(e[0]), at(e[1])}, LineKind::plane, work, lines);
         for (const auto& loop : surface.loops)
             for (const std::uint32_t v : loop) past_corner(source, v, chord, LineKind::plane, work, lines);
     }
@@ -54,6 +65,16 @@ std::vector<ShadowLineFinder::Segment> ShadowLineFinder::chords(const Source& so
         if (ends.size() == 2) result.push_back({ends[0], ends[1]});
     }
     return result;
+}
+
+/// Whether two segments lie in one plane, but not in one line.
+bool ShadowLineFinder::in_one_plane(const Segment& a, const Segment& b) const
+{
+    const Vec3 n = normal_of(a, b);
+    const double length = glm::length(n);
+    if (!(length > snap_ * glm::length(a[1] - a[0]))) return false;
+    const double slack = snap_ * length;
+    return std::abs(glm::dot(n, b[0] - a[0])) <= slack && std::abs(glm::dot(n, b[1] - a[0])) <= slack;
 }
 
 /// Where an edge is seen from the source to pass another of the same plane, which stands behind it, all along: a slit
@@ -84,13 +105,8 @@ void ShadowLineFinder::past_edges_of_one_plane(const Source& source, std::uint32
     edge_tree_.visit(shadow, [&](std::uint32_t f) {
         const Edge &a = edges_[edge], &b = edges_[f];
         if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return true;
-        const Vec3 along = e[1] - e[0], p = at(b[0]) - e[0], q = at(b[1]) - e[0];
-        const Vec3 np = glm::cross(along, p), nq = glm::cross(along, q);
-        Vec3 n = glm::dot(np, np) > glm::dot(nq, nq) ? np : nq;
-        if (!(glm::length(n) > snap_ * glm::length(along))) return true;
-        n = glm::normalize(n);
-        if (std::abs(glm::dot(n, p)) <= snap_ && std::abs(glm::dot(n, q)) <= snap_)
-            past_two_edges(source, edge, f, n, work, lines);
+        const Segment other{at(b[0]), at(b[1])};
+        if (in_one_plane(e, other)) past_two_edges(source, edge, f, glm::normalize(normal_of(e, other)), work, lines);
         return true;
     });
 }
@@ -105,7 +121,7 @@ void ShadowLineFinder::past_two_edges(const Source& source, std::uint32_t near, 
     const std::vector<Segment> sources = chords(source, normal, both[0][0]);
     if (sources.empty()) return;
     for (const Segment& chord : sources)
-        for (const Vec3& apex : chord) {
+        for (const Vec3& apex : along(chord)) {
             Pencil pencil(tree_, facets_, apex, both[1], snap_);
             if (!pencil.valid()) continue;
             ++work.counts.pencils;

@@ -124,6 +124,12 @@ void ShadowLineFinder::find(const Source& source, std::size_t element, Work& wor
     if (element < edges_.size()) {
         const Segment base{at(edges_[element][0]), at(edges_[element][1])};
         for (const std::uint32_t apex : source.corners) past_edge(source, at(apex), base, LineKind::ev, work, lines);
+        for (const Edge& e : source.edges) {
+            const Segment of_source{at(e[0]), at(e[1])};
+            if (!in_one_plane(of_source, base)) continue;
+            const std::array<Vec3, 5> places = along(of_source);
+            for (std::size_t k = 1; k < 4; ++k) past_edge(source, places[k], base, LineKind::ev, work, lines);
+        }
         if (options_.planes) past_edges_of_one_plane(source, static_cast<std::uint32_t>(element), work, lines);
         return;
     }
