@@ -149,13 +149,13 @@ void Pencil::collect(Part part, Span window, std::vector<PencilCut>& cuts) const
     tree_->visit(std::span(region).first(part == Part::to_base || part == Part::past_base ? 5 : 4),
                  [&](std::uint32_t f) {
                      if (!cut(facets_[f], sign, found)) return true;
-        found.facet = f;
-        const bool closes = part == Part::to_base && found.sides == 3 && found.t0 <= window.from &&
-                            found.t1 >= window.to && found.w0 >= enough && found.w1 >= enough;
-        if (closes) cuts.clear();
-        cuts.push_back(found);
-        return !closes;
-    });
+                     found.facet = f;
+                     const bool closes = part == Part::to_base && found.sides == 3 && found.t0 <= window.from &&
+                                         found.t1 >= window.to && found.w0 >= enough && found.w1 >= enough;
+                     if (closes) cuts.clear();
+                     cuts.push_back(found);
+                     return !closes;
+                 });
 }
 
 /// The parts of `window` in which no cut of this side reaches `least` in 1/μ: scratch.free.

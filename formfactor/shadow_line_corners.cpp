@@ -5,8 +5,7 @@
 namespace patchlight {
 
 /// The parts of a window whose rays pass an outline of what stands around the apex, a corner of it or a straight one.
-void ShadowLineFinder::outline(const Pencil& pencil, const CornerFan& fan, Span window, Outline least,
-                               Work& work) const
+void ShadowLineFinder::outline(const Pencil& pencil, const CornerFan& fan, Span window, Outline least, Work& work) const
 {
     work.outline.clear();
     work.stops.assign({window.from, window.to});
@@ -31,15 +30,17 @@ void ShadowLineFinder::past_corner_and_edges(const Source& source, std::uint32_t
     const Vec3& apex = at(vertex);
     if (above(source, apex) <= 0) return;
     const CornerFan& fan = fans_[vertex];
-    if (std::ranges::none_of(source.corners, [&](std::uint32_t c) { return fan.outline(apex - at(c)) == Outline::corner; })) return;
+    if (std::ranges::none_of(source.corners,
+                             [&](std::uint32_t c) { return fan.outline(apex - at(c)) == Outline::corner; }))
+        return;
     for (const Facet& facet : source.facets)
         for (const double sign : {1.0, -1.0}) {
             // Towards the source within the cone over it, and away from it in the opposite one.
             std::vector<FacetTree::HalfSpace> cone;
             if (sign > 0) cone.push_back({source.normal, source.offset + snap_});
             for (std::size_t k = 0; k < facet.corners.size(); ++k) {
-                const Vec3 m = -sign * glm::cross(facet.corners[k] - apex,
-                                                  facet.corners[(k + 1) % facet.corners.size()] - apex);
+                const Vec3 m =
+                    -sign * glm::cross(facet.corners[k] - apex, facet.corners[(k + 1) % facet.corners.size()] - apex);
                 cone.push_back({m, glm::dot(m, apex)});
             }
             edge_tree_.visit(cone, [&](std::uint32_t e) {
@@ -55,7 +56,8 @@ void ShadowLineFinder::past_corner_and_edges(const Source& source, std::uint32_t
         }
 }
 
-/// Light of the source past the base of a pencil and its apex, the base `before` the apex (on the source's side) or after.
+/// Light of the source past the base of a pencil and its apex, the base `before` the apex (on the source's side) or
+/// after.
 void ShadowLineFinder::past_both(const Source& source, const Pencil& pencil, std::uint32_t vertex, bool before,
                                  LineKind kind, Work& work, Lines& lines) const
 {

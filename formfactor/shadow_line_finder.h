@@ -61,8 +61,8 @@ private:
     void past_two_edges(const Source& source, std::uint32_t near, std::uint32_t far, const Vec3& normal, Work& work,
                         Lines& lines) const;
     std::vector<Segment> chords(const Source& source, const Vec3& normal, const Vec3& through) const;
-    /// The ends of a segment of the source and places in between: where an edge lies in one plane with the segment, something
-    /// else may hide both ends.
+    /// The ends of a segment of the source and places in between: where an edge lies in one plane with the segment,
+    /// something else may hide both ends.
     static std::array<Vec3, 5> along(const Segment& s)
     {
         return {s[0], 0.75 * s[0] + 0.25 * s[1], 0.5 * (s[0] + s[1]), 0.25 * s[0] + 0.75 * s[1], s[1]};

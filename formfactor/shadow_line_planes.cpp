@@ -38,7 +38,8 @@ void ShadowLineFinder::surface_plane(const Source& source, SurfaceId id, Work& w
     if (std::ranges::none_of(surface.loops[0], [&](std::uint32_t v) { return above(source, at(v)) > 0; })) return;
     for (const Segment& chord : chords(source, surface.frame.n, surface.frame.origin)) {
         for (const Edge& e : edges_of(surface))
-            for (const Vec3& end : along(chord)) past_edge(source, end, {at(e[0]), at(e[1])}, LineKind::plane, work, lines);
+            for (const Vec3& end : along(chord))
+                past_edge(source, end, {at(e[0]), at(e[1])}, LineKind::plane, work, lines);
         for (const auto& loop : surface.loops)
             for (const std::uint32_t v : loop) past_corner(source, v, chord, LineKind::plane, work, lines);
     }
@@ -111,8 +112,9 @@ void ShadowLineFinder::past_edges_of_one_plane(const Source& source, std::uint32
     });
 }
 
-/// Rays of one plane from the source past two edges: those from the ends of the source's segment in the plane, and those
-/// past the edges' ends. What stands on the edges, on either side of the plane, is what makes the line: it hides nothing.
+/// Rays of one plane from the source past two edges: those from the ends of the source's segment in the plane, and
+/// those past the edges' ends. What stands on the edges, on either side of the plane, is what makes the line: it hides
+/// nothing.
 void ShadowLineFinder::past_two_edges(const Source& source, std::uint32_t near, std::uint32_t far, const Vec3& normal,
                                       Work& work, Lines& lines) const
 {

@@ -46,7 +46,8 @@ std::vector<ShadowLineFinder::Edge> ShadowLineFinder::edges_of(const Surface& su
     return edges;
 }
 
-ShadowLineFinder::ShadowLineFinder(const Scene& scene, std::span<const SurfaceId> sources, const ShadowLineOptions& options)
+ShadowLineFinder::ShadowLineFinder(const Scene& scene, std::span<const SurfaceId> sources,
+                                   const ShadowLineOptions& options)
     : scene_(scene), options_(options), snap_(relative_snap * scene.diameter), facets_(facets_of(scene)),
       tree_(facets_), edge_tree_({}), fans_(scene.vertices.size())
 {
@@ -90,7 +91,7 @@ void ShadowLineFinder::add_hits(const Pencil& pencil, const Vec3& apex, LineKind
 
 /// The light of a point of the source past an edge.
 void ShadowLineFinder::past_edge(const Source& source, const Vec3& apex, const Segment& base, LineKind kind, Work& work,
-                           Lines& lines) const
+                                 Lines& lines) const
 {
     const double h0 = above(source, base[0]), h1 = above(source, base[1]);
     if (h0 <= 0 && h1 <= 0) return;
@@ -103,8 +104,8 @@ void ShadowLineFinder::past_edge(const Source& source, const Vec3& apex, const S
 }
 
 /// The light of a segment of the source past a corner, for the rays that pass on the outline of what is around it.
-void ShadowLineFinder::past_corner(const Source& source, std::uint32_t vertex, const Segment& base, LineKind kind, Work& work,
-                             Lines& lines) const
+void ShadowLineFinder::past_corner(const Source& source, std::uint32_t vertex, const Segment& base, LineKind kind,
+                                   Work& work, Lines& lines) const
 {
     const Vec3& apex = at(vertex);
     if (above(source, apex) <= 0) return;
