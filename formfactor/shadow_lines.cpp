@@ -131,7 +131,9 @@ void ShadowLineFinder::find(const Source& source, std::size_t element, Work& wor
             const std::array<Vec3, 5> places = along(of_source);
             for (std::size_t k = 1; k < 4; ++k) past_edge(source, places[k], base, LineKind::ev, work, lines);
         }
-        if (options_.planes) past_edges_of_one_plane(source, static_cast<std::uint32_t>(element), work, lines);
+        // An edge past which none of these arrives stands in the dark, or as good as.
+        if (options_.planes && !lines.empty())
+            past_edges_of_one_plane(source, static_cast<std::uint32_t>(element), work, lines);
         return;
     }
     element -= edges_.size();
