@@ -140,7 +140,7 @@ void ShadowLineFinder::find(const Source& source, std::size_t element, Work& wor
     if (element < corners_.size()) {
         for (const Edge& e : source.edges)
             past_corner(source, corners_[element], {at(e[0]), at(e[1])}, LineKind::ve, work, lines);
-        if (options_.blockers) past_corner_and_edges(source, corners_[element], work, lines);
+        if (options_.blockers && !lines.empty()) past_corner_and_edges(source, corners_[element], work, lines);
         return;
     }
     if (!options_.planes) return;
