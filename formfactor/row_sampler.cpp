@@ -103,8 +103,8 @@ std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column
     return traced + own.traced;
 }
 
-const HemisphereSet& RowSampler::aim_from(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
-                                          RowScratch& scratch) const
+void RowSampler::point_row(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
+                           std::uint64_t jitter_key, RowScratch& scratch) const
 {
     const PlaneFrame& frame = scene_.surface(surface).frame;
     RandomNumbers random(options_.seed, ~direction_key);
@@ -114,39 +114,20 @@ const HemisphereSet& RowSampler::aim_from(const Vec3& position, SurfaceId surfac
     std::fill_n(scratch.rays.ox.begin(), set.size(), static_cast<float>(start.x));
     std::fill_n(scratch.rays.oy.begin(), set.size(), static_cast<float>(start.y));
     std::fill_n(scratch.rays.oz.begin(), set.size(), static_cast<float>(start.z));
-    return set;
-}
-
-void RowSampler::point_row(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
-                           std::uint64_t jitter_key, RowScratch& scratch) const
-{
-    accumulate(aim_from(position, surface, direction_key, scratch), scratch);
-    scratch.receivers.assign(1, {position, scene_.surface(surface).frame.n});
+    accumulate(set, scratch);
+    scratch.receivers.assign(1, {position, frame.n});
     swap_small_sources(surface, jitter_key, scratch);
     collect(scratch);
 }
 
-std::span<const float> RowSampler::point_rays(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
-                                              RowScratch& scratch) const
-{
-    const HemisphereSet& set = aim_from(position, surface, direction_key, scratch);
-    trace(set, scratch);
-    return set.factor;
-}
-
-void RowSampler::trace(const HemisphereSet& set, RowScratch& scratch) const
+void RowSampler::accumulate(const HemisphereSet& set, RowScratch& scratch) const
 {
     caster_.closest(scratch.rays, scratch.hits);
     scratch.traced += set.size();
-    scratch.found.resize(set.size());
-    locator_.locate(scratch.hits.surface, scratch.hits.x, scratch.hits.y, HitBatch::black_back, scratch.found);
-}
-
-void RowSampler::accumulate(const HemisphereSet& set, RowScratch& scratch) const
-{
-    trace(set, scratch);
     if (scratch.weight.size() < mesh_.patch_count()) scratch.weight.resize(mesh_.patch_count(), 0.0F);
     scratch.touched.clear();
+    scratch.found.resize(set.size());
+    locator_.locate(scratch.hits.surface, scratch.hits.x, scratch.hits.y, HitBatch::black_back, scratch.found);
     double escaped = 0, backs = 0;
     for (std::size_t i = 0; i < set.size(); ++i) {
         if (!scratch.found[i].valid()) {

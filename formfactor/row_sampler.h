@@ -41,11 +41,6 @@ public:
     void point_row(const Vec3& position, SurfaceId surface, std::uint64_t direction_key, std::uint64_t jitter_key,
                    RowScratch& scratch) const;
 
-    /// The rays of a point one by one, where point_row would sum them patch by patch: into scratch.hits what each
-    /// meets, into scratch.found the patches; returns each ray's part of the factor. Sources are met like all else.
-    std::span<const float> point_rays(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
-                                      RowScratch& scratch) const;
-
     /// The column of a shooting patch: F_ji for every patch j into `column` (patch_count values). Receivers that
     /// see the shooter small see it by Lambert's formula and `shadow_rays` [WallaceElmquistHaines89], the others take
     /// what the shooter's own row says, F_ji = F_ij A_i/A_j. On all threads. Returns the rays traced.
@@ -54,9 +49,6 @@ public:
     const std::vector<Source>& sources() const { return sources_; }
 
 private:
-    const HemisphereSet& aim_from(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
-                                  RowScratch& scratch) const;
-    void trace(const HemisphereSet& set, RowScratch& scratch) const;
     void accumulate(const HemisphereSet& set, RowScratch& scratch) const;
     void swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch& scratch) const;
     void collect(RowScratch& scratch) const;

@@ -9,97 +9,33 @@
 
 namespace patchlight {
 
-namespace {
-
-RowSampler sampler_of(const Exchange& exchange, std::span<const SurfaceId> sources, const GatherOptions& options)
+GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
+                                const GatherOptions& options, const WorkMonitor& monitor)
 {
-    return RowSampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, sources,
-                      {.rays = options.rays,
-                       .shadow_rays = options.shadow_rays,
-                       .small_source = options.small_source,
-                       .seed = options.seed});
-}
-
-/// What of B the rays bring: all, or, where emitters' light is added exactly, what is reflected.
-Radiosity arriving(const Exchange& exchange, Radiosity B)
-{
+    const FormFactorOptions sampling{.rays = options.rays,
+                                     .shadow_rays = options.shadow_rays,
+                                     .small_source = options.small_source,
+                                     .seed = options.seed};
+    const std::vector<SurfaceId> sources = exchange.direct ? std::vector<SurfaceId>{} : emitters(exchange.scene);
+    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, sources, sampling);
+    Radiosity arriving = B;
     if (exchange.direct)
         for (const PatchId p : exchange.mesh.patches())
-            B[p] -= exchange.scene.material_of(exchange.mesh.surface(p)).emission;
-    return B;
-}
-
-/// Irradiance at each point of a surface that reflects: what `indirect(point, i, scratch)` finds, and the emitters'.
-template <class Indirect>
-GatheredLight gather(const Exchange& exchange, std::span<const SurfacePoint> points, const WorkMonitor& monitor,
-                     const Indirect& indirect)
-{
+            arriving[p] -= exchange.scene.material_of(exchange.mesh.surface(p)).emission;
     tbb::enumerable_thread_specific<DirectLight::Scratch> scratches;
     GatheredLight result;
     result.irradiance.assign(points.size(), Rgb(0.0));
     result.rays = for_each_row<RowScratch>(points.size(), monitor, [&](std::size_t i, RowScratch& scratch) {
         const SurfacePoint& point = points[i];
         if (!exchange.scene.material_of(point.surface).reflects()) return;
-        Rgb H = indirect(point, i, scratch);
+        sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
+        Rgb H(0.0);
+        for (std::size_t k = 0; k < scratch.row.patches.size(); ++k)
+            H += scratch.row.factors[k] * arriving[scratch.row.patches[k]];
         if (exchange.direct)
             H += direct_irradiance(exchange.scene, *exchange.direct, point.limit, point.surface, scratches.local());
         result.irradiance[i] = H;
     });
-    return result;
-}
-
-/// Rays bring B of the patches they meet.
-GatheredLight gather_from_patches(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
-                                  const GatherOptions& options, const WorkMonitor& monitor)
-{
-    const std::vector<SurfaceId> sources = exchange.direct ? std::vector<SurfaceId>{} : emitters(exchange.scene);
-    const RowSampler sampler = sampler_of(exchange, sources, options);
-    const Radiosity brought = arriving(exchange, B);
-    return gather(exchange, points, monitor, [&](const SurfacePoint& point, std::size_t i, RowScratch& scratch) {
-        sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
-        Rgb H(0.0);
-        for (std::size_t k = 0; k < scratch.row.patches.size(); ++k)
-            H += scratch.row.factors[k] * brought[scratch.row.patches[k]];
-        return H;
-    });
-}
-
-/// Rays bring what the linear elements reflect where they are met.
-GatheredLight gather_from_vertices(const Exchange& exchange, const VertexRadiosity& reflected,
-                                   std::span<const SurfacePoint> points, const GatherOptions& options,
-                                   const WorkMonitor& monitor)
-{
-    const RowSampler sampler = sampler_of(exchange, {}, options);
-    return gather(exchange, points, monitor, [&](const SurfacePoint& point, std::size_t, RowScratch& scratch) {
-        const auto factors = sampler.point_rays(point.position, point.surface, point.surface.value, scratch);
-        Rgb H(0.0);
-        for (std::size_t k = 0; k < factors.size(); ++k) {
-            const PatchId p = scratch.found[k];
-            if (!p.valid()) continue;
-            const auto w = exchange.locator.barycentric(p, {scratch.hits.x[k], scratch.hits.y[k]});
-            const auto c = exchange.mesh.corners(p);
-            H += static_cast<double>(factors[k]) *
-                 (w[0] * reflected[c[0]] + w[1] * reflected[c[1]] + w[2] * reflected[c[2]]);
-        }
-        return H;
-    });
-}
-
-}  // namespace
-
-GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
-                                const GatherOptions& options, const WorkMonitor& monitor)
-{
-    if (!exchange.direct) return gather_from_patches(exchange, B, points, options, monitor);
-    GatherOptions fewer = options;
-    fewer.rays = std::max(64, options.rays / 4);
-    GatheredLight first = gather_from_patches(exchange, B, vertex_points(exchange), fewer, monitor);
-    share_irradiance(exchange, options.crease_angle, first.irradiance);
-    VertexRadiosity reflected(exchange.mesh.vertex_count());
-    for (const VertexId v : exchange.mesh.vertices())
-        reflected[v] = exchange.scene.material_of(exchange.mesh.surface(v)).reflectance * first.irradiance[v.value];
-    GatheredLight result = gather_from_vertices(exchange, reflected, points, options, monitor);
-    result.rays += first.rays;
     return result;
 }
 

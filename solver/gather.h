@@ -32,10 +32,8 @@ struct GatheredLight {
     std::size_t rays = 0;
 };
 
-/// Irradiance at points from the patch solution B: one more bounce; with exact direct light two, of which the first
-/// makes linear elements of B by a quarter of the rays: what patches' constant B shows in creases and close to bright
-/// surfaces is gone then. Points of one surface share their directions, so that what the rays don't resolve varies
-/// smoothly over it. Throws Interrupted.
+/// Irradiance at points from the patch solution B: one more bounce. Points of one surface share their directions,
+/// so that what the rays don't resolve varies smoothly over it. Throws Interrupted.
 GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
                                 const GatherOptions& options, const WorkMonitor& monitor = {});
 
