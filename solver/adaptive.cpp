@@ -210,7 +210,7 @@ std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight
     if (!direct) return found;
     std::vector<Rgb> exitance;
     for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
-    const auto shadows = measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
+    const auto shadows = measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene), {.blockers = false}));
     found.insert(found.end(), shadows.begin(), shadows.end());
     return found;
 }
