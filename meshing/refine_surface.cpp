@@ -320,7 +320,7 @@ private:
     {
         const Vec3 place = middle_of(a, b);
         const Vec2 middle = plane_.to_plane(place);
-        const auto [face, blocking] = walk(mesh_.face_handle(*mesh_.cvoh_begin(a)), middle);
+        const auto [face, blocking] = walk(*mesh_.cvf_begin(a), middle);
         if (blocking.is_valid() || !face.is_valid()) return;
         for (const auto h : mesh_.fh_range(face))
             if (!MeshingPlane::is_thick(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), middle)) return;
