@@ -23,7 +23,7 @@ struct Discontinuity {
 
 struct LineOptions {
     /// A line is inserted when, left out, it would cost more elements than this on its two sides.
-    double least_saving = 6;
+    double least_saving = 4;
     /// Of the light reflected first: the brightest surfaces that hold this share cast shadows with lines, too. Such
     /// wide sources' lines rarely pay, and finding them among many blockers takes long: none unless asked for.
     double secondary_share = 0;

@@ -48,8 +48,8 @@ enum class Marking {
 
 struct MarkOptions {
     Marking marking = Marking::doerfler;
-    double share = 0.75;  ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
-    double least = 0.1;   ///< of the patches are split in any case: a few with huge errors must not cost a cycle each
+    double share = 0.5;   ///< of Σ η² (doerfler) or of the patches (fixed_fraction), in (0, 1]
+    double least = 0.05;  ///< of the patches are split in any case: a few with huge errors must not cost a cycle each
     double smallest = 3e-6;  ///< edges below this × diameter are left alone
 };
 
