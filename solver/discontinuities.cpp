@@ -41,7 +41,8 @@ public:
         const Vec2 way = line.end - line.start;
         const double h = std::min(step * scene_.diameter, 0.05 * glm::length(way));
         const Vec2 across = h * glm::normalize(Vec2(-way.y, way.x));
-        for (const double t : {0.25, 0.5, 0.75}) {
+        for (const double t : {0.5, 0.25, 0.75}) {
+            if (found.value > 0 || found.slope > 0) break;
             const Vec2 q = line.start + t * way;
             const OneSided left = side(line.surface, q, across, h, scratch);
             const OneSided right = side(line.surface, q, -across, h, scratch);

@@ -30,8 +30,8 @@ double strength(const Discontinuity& line, double distance);
 std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct);
 
 /// Measures the jumps in the exact direct light of `exitance` (W/m², one a source of `direct`): a parabola through
-/// three points on either side of the line's middle and quarters, the largest of the three. Lines without any jump
-/// beyond rounding, and those on a surface's border, are left out.
+/// three points on either side of the line's middle and, where nothing but the second derivative jumps there, of its
+/// quarters, the largest. Lines without any jump beyond rounding, and those on a surface's border, are left out.
 std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
                                          std::span<const SurfaceLine> lines);
 
