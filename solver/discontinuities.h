@@ -21,9 +21,6 @@ struct Discontinuity {
     double second = 0;  ///< W/m⁴
 };
 
-/// How much the jumps change the light at `distance` from the line, W/m²: value + slope·d + second·d²/2.
-double strength(const Discontinuity& line, double distance);
-
 /// All lines on surfaces that reflect: the scene's contact lines, then those of the emitters' shadows (see
 /// shadow_lines()), with their jumps in `direct`, which must be emitters_light() of the scene. Contact lines are kept
 /// also where the direct light happens not to jump. Without `direct`: contact lines alone, jumps unknown (0).
