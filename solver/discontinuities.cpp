@@ -123,11 +123,6 @@ std::vector<Discontinuity> measure_all(const Scene& scene, const DirectLight& di
 
 }  // namespace
 
-double strength(const Discontinuity& line, double distance)
-{
-    return line.value + distance * (line.slope + 0.5 * distance * line.second);
-}
-
 std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options)
 {
     std::vector<SurfaceLine> contacts;

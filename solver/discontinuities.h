@@ -30,9 +30,6 @@ struct LineOptions {
     std::size_t most_secondary = 4;  ///< of these surfaces
 };
 
-/// How much the jumps change the light at `distance` from the line, W/m²: value + slope·d + second·d²/2.
-double strength(const Discontinuity& line, double distance);
-
 /// All lines on surfaces that reflect: the scene's contact lines, then those of the emitters' shadows and of secondary
 /// sources' (see shadow_lines(), secondary_sources()), with their jumps in `direct`, which must be emitters_light() of
 /// the scene. Contact lines are kept also where the direct light happens not to jump. Without `direct`: contact lines

@@ -1,5 +1,6 @@
 #include "apps/patchlight/inspect_lines.h"
 
+#include "apps/patchlight/scene_input.h"
 #include "apps/run/stored_scene.h"
 #include "solver/system.h"
 
@@ -43,9 +44,12 @@ std::vector<Discontinuity> strongest_lines(const Scene& scene)
 {
     const std::optional<DirectLight> direct = emitters_light(scene);
     std::vector<Discontinuity> lines = discontinuities(scene, direct ? &*direct : nullptr, {});
-    const double away = 0.01 * scene.diameter;
-    std::ranges::stable_sort(lines,
-                             [&](const auto& a, const auto& b) { return strength(a, away) > strength(b, away); });
+    // An element's share of an error of 1 % on 8,000 elements, if the emitters' light were spread evenly.
+    const double area = total_area(scene), level = 0.01 * emitted_power(scene) / area;
+    const double element_error = level * level * area / 8000;
+    std::ranges::stable_sort(lines, [&](const auto& a, const auto& b) {
+        return elements_saved(a, element_error) > elements_saved(b, element_error);
+    });
     return lines;
 }
 

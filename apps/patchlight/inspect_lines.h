@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// The scene's discontinuity lines with the jumps of its emitters' light, the strongest first: those that change
-/// the light most a hundredth of the scene's diameter away, see strength().
+/// The scene's discontinuity lines with the jumps of its emitters' light, the strongest first: those that would
+/// cost most elements if the mesh were refined along them instead, see elements_saved().
 std::vector<Discontinuity> strongest_lines(const Scene& scene);
 
 /// One object a line: kind, surface, object (or material, where objects have no names), from and to (the scene file's

@@ -47,8 +47,8 @@ std::vector<std::uint32_t> numbers_of(std::span<const MeshLine> lines)
 
 std::vector<MeshLine> lines_in(const ByteViews& views)
 {
-    if (!views.contains("lines")) {  // empty arrays aren't stored
-        return {};
+    if (!views.contains("lines")) {
+        return {};  // empty arrays aren't stored
     }
     const std::vector<std::uint32_t> numbers = integers_in(views, "lines");
     if (numbers.size() % line_numbers != 0) {

@@ -79,6 +79,34 @@ TEST_F(PictureTest, APixelTimesPiIsTheRadiosityOfThePointItShows)
     EXPECT_GT(seen, 900);
 }
 
+TEST_F(PictureTest, QuadraticElementsAreShadedByTheirPolynomial)
+{
+    const auto light = [](const Vec3& p) { return Rgb(1 + p.x * p.x, 2 - p.x * p.y, 1 + p.y * p.y); };
+    MidpointRadiosity middle_B(mesh_.patch_count());
+    for (VertexId v : mesh_.vertices()) {
+        vertex_B_[v] = light(mesh_.position(v));
+    }
+    for (PatchId p : mesh_.patches()) {
+        const auto c = mesh_.corners(p);
+        for (std::size_t k = 0; k < 3; ++k) {
+            middle_B[p][k] = light(0.5 * (mesh_.position(c[k]) + mesh_.position(c[(k + 1) % 3])));
+        }
+    }
+    ShownSolution solution = shown();
+    solution.middle_B = &middle_B;
+    const Image image = render_picture(solution, caster_, view_, {.width = 90, .height = 60, .samples = 1});
+    for (int y = 0; y < 60; ++y) {
+        for (int x = 0; x < 90; ++x) {
+            if (const auto p = floor_point(x, y, 90, 60)) {
+                for (int band = 0; band < 3; ++band) {
+                    // Looked up in single precision: at an edge the neighbour's polynomial may answer.
+                    EXPECT_NEAR(std::numbers::pi * image.at(x, y)[band] / light(*p)[band], 1, 1e-6);
+                }
+            }
+        }
+    }
+}
+
 TEST_F(PictureTest, BacksAndTheBackgroundAreBlack)
 {
     view_.from = {0.5, 0.5, 3};  // above the lamp, whose back it sees, around it the floor

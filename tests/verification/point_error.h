@@ -1,7 +1,6 @@
 #pragma once
 
-#include "meshing/patch_locator.h"
-#include "solver/radiosity.h"
+#include "solver/element_light.h"
 
 #include <array>
 #include <cmath>
@@ -65,9 +64,7 @@ inline std::optional<Rgb> radiosity_at(const Scene& scene, const PatchMesh& mesh
         if (glm::distance(found, p) <= 1e-6 * scene.diameter) best = patch;
     }
     if (!best.valid()) return {};
-    const auto w = locator.barycentric(best, scene.surface(mesh.surface(best)).frame.to_plane(p));
-    const auto c = mesh.corners(best);
-    return w[0] * B[c[0]] + w[1] * B[c[1]] + w[2] * B[c[2]];
+    return ElementLight{mesh, locator, B}.at(best, scene.surface(mesh.surface(best)).frame.to_plane(p));
 }
 
 struct PointError {
