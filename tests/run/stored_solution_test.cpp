@@ -29,6 +29,7 @@ struct Stored {
     Radiosity B = Radiosity(mesh.patch_count());
     VertexRadiosity vertex_B = VertexRadiosity(mesh.vertex_count());
     PatchField<double> eta = PatchField<double>(mesh.patch_count());
+    PatchField<std::uint8_t> edge = PatchField<std::uint8_t>(mesh.patch_count());
 
     Stored()
     {
@@ -39,12 +40,13 @@ struct Stored {
         for (std::size_t i = 0; i < B.size(); ++i) {
             B[PatchId(i)] = {awkward(3 * i), awkward(3 * i + 1), 1e-300};
             eta[PatchId(i)] = awkward(i);
+            edge[PatchId(i)] = static_cast<std::uint8_t>(i % 3);
         }
         for (std::size_t i = 0; i < vertex_B.size(); ++i) {
             vertex_B[VertexId(i)] = {awkward(i), 0, 1e9 + awkward(i)};
         }
     }
-    std::string encoded() const { return encode_solution(scene, mesh, B, vertex_B, eta); }
+    std::string encoded() const { return encode_solution(scene, mesh, B, vertex_B, eta, edge); }
 };
 
 TEST(StoredSolution, ComesBackEqualToTheBit)
@@ -54,6 +56,7 @@ TEST(StoredSolution, ComesBackEqualToTheBit)
     EXPECT_EQ(back.B, stored.B);
     EXPECT_EQ(back.vertex_B, stored.vertex_B);
     EXPECT_EQ(back.eta, stored.eta);
+    EXPECT_EQ(back.edge, stored.edge);
     EXPECT_EQ(back.mesh.arrays().positions, stored.mesh.arrays().positions);
     EXPECT_EQ(back.mesh.arrays().triangles, stored.mesh.arrays().triangles);
     EXPECT_EQ(back.mesh.arrays().vertex_surface, stored.mesh.arrays().vertex_surface);
@@ -61,7 +64,7 @@ TEST(StoredSolution, ComesBackEqualToTheBit)
     EXPECT_EQ(back.scene.views.at(0).from, stored.scene.views.at(0).from);
     EXPECT_EQ(back.scene.surfaces.at(1).loops, stored.scene.surfaces.at(1).loops);
     EXPECT_EQ(scene_digest(back.scene), scene_digest(stored.scene));
-    EXPECT_EQ(encode_solution(back.scene, back.mesh, back.B, back.vertex_B, back.eta), stored.encoded());
+    EXPECT_EQ(encode_solution(back.scene, back.mesh, back.B, back.vertex_B, back.eta, back.edge), stored.encoded());
 }
 
 TEST(StoredSolution, NamesThatAreNotUtf8DoNotStopIt)
