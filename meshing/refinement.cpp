@@ -127,15 +127,11 @@ std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::
     return best;
 }
 
-/// Whether a triangulation with lines put into it has any that it hadn't before.
-bool has_more_lines(const SurfaceTriangulation& lined, const SurfaceTriangulation& before)
+std::array<std::size_t, line_kinds.size()> edges_by_kind(const SurfaceTriangulation& triangulation)
 {
-    const auto kinds = [](const SurfaceTriangulation& t) {
-        std::array<std::size_t, line_kinds.size()> counts{};
-        for (const auto& line : t.lines) ++counts[static_cast<std::size_t>(line.kind)];
-        return counts;
-    };
-    return lined.positions.size() != before.positions.size() || kinds(lined) != kinds(before);
+    std::array<std::size_t, line_kinds.size()> counts{};
+    for (const auto& line : triangulation.lines) ++counts[static_cast<std::size_t>(line.kind)];
+    return counts;
 }
 
 /// The surfaces' triangulations, and which of them lines have changed.
@@ -154,8 +150,8 @@ LinedPieces with_lines(const Scene& scene, const PatchMesh& mesh, const LinesOfS
         if (lines[s.value].empty()) return;
         const SurfaceTriangulation before = piece.lines.empty() ? triangulate_polygon(scene, s) : piece;
         SurfaceTriangulation lined = insert_lines({scene.surface(s).frame, scene.diameter}, before, lines[s.value]);
-        // Lines outside of the surface, or there already, are no reason to lose what it has.
-        if (!has_more_lines(lined, before)) return;
+        // Lines outside of the surface, on its border, or there already, are no reason to lose what it has.
+        if (edges_by_kind(lined) == edges_by_kind(before)) return;
         piece = std::move(lined);
         result.changed[s.value] = 1;
     });

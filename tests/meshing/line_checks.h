@@ -17,6 +17,22 @@ inline SurfaceLine line_from(const Vec2& start, const Vec2& end, LineKind kind =
     return {only_surface, kind, start, end};
 }
 
+/// On each surface that reflects a contact line and another that cross.
+inline std::vector<SurfaceLine> crosses(const Scene& scene)
+{
+    std::vector<SurfaceLine> lines;
+    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+        if (!scene.material_of(SurfaceId(s)).reflects()) continue;
+        const Surface& surface = scene.surfaces[s];
+        const auto corner = [&](std::size_t k) { return surface.frame.to_plane(scene.vertices[surface.loops[0][k]]); };
+        const Vec2 a = corner(0), b = corner(1), c = corner(2), middle = (a + b + c) / 3.0;
+        const auto inwards = [&](const Vec2& q, double t) { return q + t * (middle - q); };
+        lines.push_back({SurfaceId(s), LineKind::contact, inwards(a, 0.2), inwards(0.5 * (b + c), 0.2)});
+        lines.push_back({SurfaceId(s), LineKind::ev, inwards(b, 0.3), inwards(0.5 * (a + c), 0.3)});
+    }
+    return lines;
+}
+
 /// A polygon and what lines make of its triangulation.
 struct LinedSurface {
     Scene scene;

@@ -1,7 +1,6 @@
 #include "meshing/refinement.h"
 
-#include "tests/meshing/flat_scenes.h"
-#include "tests/meshing/mesh_checks.h"
+#include "tests/meshing/line_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -92,6 +91,25 @@ TEST(PatchTransfer, scenes_of_many_surfaces)
         expect_complete(mesh, refined.mesh, refined.transfer);
         expect_conserved(mesh, refined);
         mesh = std::move(refined.mesh);
+    }
+}
+
+// Over contact lines, which are cut open, and over surfaces that are meshed anew.
+TEST(PatchTransfer, meshes_that_get_lines)
+{
+    const Scene scene = cornell_box();
+    PatchMesh mesh = triangulate(scene, {.max_elements = 600});
+    RefinementPlan plan = random_plan(mesh, 0.3, 1);
+    plan.lines = crosses(scene);
+    for (std::uint32_t round = 0; round < 3; ++round) {
+        Refinement refined = refine(scene, mesh, plan, {});
+        expect_complete(mesh, refined.mesh, refined.transfer);
+        expect_conserved(mesh, refined);
+        mesh = std::move(refined.mesh);
+        plan = random_plan(mesh, 0.3, round);
+        for (const SurfaceLine& line : crosses(scene))
+            plan.lines.push_back({line.surface, LineKind::contact, line.start,
+                                  line.end + 0.1 * (round + 1.0) * Vec2(line.end.y - line.start.y, 0)});
     }
 }
 
