@@ -16,6 +16,9 @@ namespace {
 /// Rounds end when pieces do; this is for what rounding might chase in circles.
 constexpr int most_rounds = 40;
 
+/// How far a point may be from the border that it was put on: both are rounded to 2⁻³⁰.
+constexpr double border_rounding = 4e-9;
+
 /// The points, and which of them is near a place: a grid of cells as wide as `merge`.
 class WeldedPoints {
 public:
@@ -182,7 +185,14 @@ private:
         if (piece.border && !on_border_[point]) return false;
         const Vec2 &a = at(piece.points[0]), &b = at(piece.points[1]), &q = at(point);
         const double t = glm::dot(q - a, b - a) / glm::dot(b - a, b - a);
-        return t > 0 && t < 1 && glm::distance(q, a + t * (b - a)) < merge_;
+        return t > 0 && t < 1 && glm::distance(q, a + t * (b - a)) < (piece.border ? border_rounding : merge_);
+    }
+
+    /// The border goes through a point that lies on it, and not through one near it, on another border perhaps.
+    bool may_divide(const PlanePiece& piece, std::uint32_t point) const
+    {
+        if (piece.points[0] == point || piece.points[1] == point) return false;
+        return !piece.border || goes_past(piece, point);
     }
 
     void find_crossings(const std::vector<Box3>& boxes, std::vector<std::pair<std::uint32_t, std::uint32_t>>& divisions)
@@ -195,8 +205,8 @@ private:
         for (const auto& [i, k] : pairs) {
             const auto &p = pieces_[i].points, &q = pieces_[k].points;
             const std::uint32_t point = weld(*crossing(at(p[0]), at(p[1]), at(q[0]), at(q[1])));
-            if (point != p[0] && point != p[1]) divisions.emplace_back(i, point);
-            if (point != q[0] && point != q[1]) divisions.emplace_back(k, point);
+            if (may_divide(pieces_[i], point)) divisions.emplace_back(i, point);
+            if (may_divide(pieces_[k], point)) divisions.emplace_back(k, point);
         }
     }
 

@@ -300,6 +300,26 @@ TEST(InsertLines, hundreds_of_random_lines_in_polygons_of_all_kinds)
             }
 }
 
+// Near the tip of a wedge a point lies on one border and nearer than merging to the other: neither may bend.
+TEST(InsertLines, narrow_wedges_of_the_border_stay_what_they_are)
+{
+    for (const double degrees : {0.001, 0.02, 0.5, 5.0}) {
+        SCOPED_TRACE(degrees);
+        const PlaneLoops wedge = sharp_triangle(degrees);
+        // A notch that narrow: the surface lies on both sides of it.
+        const PlaneLoops notch{{{-1, -1}, {2, -1}, {2, 0}, wedge[0][0], wedge[0][2], {1, 1}, {-1, 1}}};
+        for (const PlaneFrame& frame : {PlaneFrame{}, tilted_frame()})
+            for (const PlaneLoops& loops : {wedge, notch}) {
+                std::vector<SurfaceLine> lines;
+                for (int i = 0; i < 60; ++i) {
+                    const double x = std::pow(10, -5.5 + 0.09 * i), lean = 0.3 * x * (i % 3 - 1);
+                    lines.push_back(line_from({x, -0.5}, {x + lean, 0.5}));
+                }
+                with_lines(loops, lines, frame);
+            }
+    }
+}
+
 TEST(InsertLines, again_and_again_nothing_is_lost)
 {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
