@@ -51,7 +51,7 @@ CornerFan corner_fan(const FacetTree& tree, std::span<const Facet> facets, const
     return fan;
 }
 
-bool CornerFan::covers(const Vec3& d) const
+Outline CornerFan::outline(const Vec3& d) const
 {
     const Vec3 axis = glm::normalize(d);
     const Vec3 other = std::abs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
@@ -64,14 +64,19 @@ bool CornerFan::covers(const Vec3& d) const
         const double from = turn > 0 ? angle(p) : angle(q), to = turn > 0 ? angle(q) : angle(p);
         arcs.emplace_back(from, to < from ? to + full : to);
     }
-    if (arcs.empty()) return false;
+    if (arcs.empty()) return Outline::corner;
     std::ranges::sort(arcs);
+    std::vector<double> gaps;
     double until = arcs.front().second;
     for (const auto& [from, to] : arcs) {
-        if (from > until + slack) return false;
+        if (from > until + slack) gaps.push_back(from - until);
         until = std::max(until, to);
     }
-    return until >= arcs.front().first + full - slack;
+    const double last = arcs.front().first + full - until;
+    if (last > slack) gaps.push_back(last);
+    if (gaps.empty()) return Outline::hidden;
+    const bool straight = gaps.size() == 1 && std::abs(gaps[0] - std::numbers::pi) <= slack;
+    return straight ? Outline::straight : Outline::corner;
 }
 
 }  // namespace patchlight

@@ -59,8 +59,8 @@ private:
 
     static bool meets(const Node& node, std::span<const HalfSpace> region)
     {
-        return std::ranges::all_of(
-            region, [&](const HalfSpace& h) { return h.most_in(node.middle, node.half) >= h.offset; });
+        return std::ranges::all_of(region,
+                                   [&](const HalfSpace& h) { return h.most_in(node.middle, node.half) >= h.offset; });
     }
     void build(std::span<const Vec3> lows, std::span<const Vec3> highs, std::uint32_t first, std::uint32_t last);
 

@@ -52,11 +52,32 @@ double Pencil::parameter_in(const Vec3& normal) const
     return (h0 < 0) == (h1 < 0) || h0 == h1 ? -1 : h0 / (h0 - h1);
 }
 
+Span Pencil::window_through(const std::array<Vec3, 2>& segment) const
+{
+    Span window{1, 0};
+    for (const Vec3& p : segment) {
+        const double a = glm::dot(alpha_, p - apex_), b = glm::dot(beta_, p - apex_);
+        if (!(a + b > 0) || !(a + b < 1)) return {1, 0};
+        const double t = std::clamp(b / (a + b), 0.0, 1.0);
+        window = {std::min(window.from, t), std::max(window.to, t)};
+    }
+    return window;
+}
+
+bool Pencil::is_open(const std::array<Vec3, 2>& cut) const
+{
+    return std::ranges::any_of(open_, [&](const std::array<Vec3, 2>& edge) {
+        const Vec3 along = glm::normalize(edge[1] - edge[0]);
+        return std::ranges::all_of(
+            cut, [&](const Vec3& p) { return glm::length(glm::cross(along, p - edge[0])) <= 2 * snap_; });
+    });
+}
+
 /// The facet's cut with the plane on the side of the apex where the base is (sign 1) or on the other (−1).
 bool Pencil::cut(const Facet& facet, double sign, PencilCut& result) const
 {
     const Vec3 along = glm::cross(n_, facet.normal);
-    Vec3 ends[2];
+    std::array<Vec3, 2> ends;
     double least = 0, most = 0;
     int found = 0, zeros = 0;
     bool above = false, below = false;
@@ -84,6 +105,7 @@ bool Pencil::cut(const Facet& facet, double sign, PencilCut& result) const
     if (found < 2 || (!above && !below)) return false;
     result.sides = (above ? 1U : 0U) | (below ? 2U : 0U);
 
+    if (result.sides != 3 && is_open(ends)) return false;
     const Vec3 p = ends[0] - apex_, q = ends[1] - apex_, pq = q - p;
     // A cut whose line passes through the apex is seen end on.
     if (!(glm::length(glm::cross(p, pq)) > snap_ * glm::length(pq))) return false;
@@ -118,18 +140,22 @@ void Pencil::collect(Part part, Span window, std::vector<PencilCut>& cuts) const
     const auto from_apex = [&](const Vec3& normal, double offset) {
         return FacetTree::HalfSpace{normal, glm::dot(normal, apex_) + offset - snap_ * glm::length(normal)};
     };
-    const std::array<FacetTree::HalfSpace, 5> region{
-        from_apex(n_, 0), from_apex(-n_, 0), from_apex(low, 0), from_apex(high, 0),
-        part == Part::to_base ? from_apex(-sum, -1) : from_apex(sum, 1)};
+    const std::array<FacetTree::HalfSpace, 5> region{from_apex(n_, 0), from_apex(-n_, 0), from_apex(low, 0),
+                                                     from_apex(high, 0),
+                                                     part == Part::to_base ? from_apex(-sum, -1) : from_apex(sum, 1)};
     cuts.clear();
     PencilCut found;
-    tree_->visit(std::span(region).first(part == Part::to_base || part == Part::past_base ? 5 : 4), [&](std::uint32_t f) {
-        if (cut(facets_[f], sign, found)) {
-            found.facet = f;
-            cuts.push_back(found);
-        }
-        return true;
-    });
+    const double enough = 1 + 8 * snap_ / reach_;  // one that covers all will do
+    tree_->visit(std::span(region).first(part == Part::to_base || part == Part::past_base ? 5 : 4),
+                 [&](std::uint32_t f) {
+                     if (!cut(facets_[f], sign, found)) return true;
+                     found.facet = f;
+                     const bool closes = part == Part::to_base && found.sides == 3 && found.t0 <= window.from &&
+                                         found.t1 >= window.to && found.w0 >= enough && found.w1 >= enough;
+                     if (closes) cuts.clear();
+                     cuts.push_back(found);
+                     return !closes;
+                 });
 }
 
 /// The parts of `window` in which no cut of this side reaches `least` in 1/μ: scratch.free.
@@ -161,6 +187,13 @@ void Pencil::opposite(Span window, PencilScratch& scratch) const
     scratch.hits.clear();
     collect(Part::to_base, window, scratch.cuts);
     for (const unsigned side : {1U, 2U}) block(scratch.cuts, side, 1 + 4 * snap_ / reach_, window, scratch);
+    trace(Part::past_apex, window, scratch);
+}
+
+void Pencil::backward(Span window, PencilScratch& scratch) const
+{
+    scratch.hits.clear();
+    for (std::vector<Span>& free : scratch.free) free.assign({window});
     trace(Part::past_apex, window, scratch);
 }
 

@@ -55,10 +55,16 @@ public:
     void beyond(Span window, PencilScratch& scratch) const;
     /// Light from the base beyond the apex.
     void opposite(Span window, PencilScratch& scratch) const;
+    /// What is first met from the apex away from the base, on either side of the plane.
+    void backward(Span window, PencilScratch& scratch) const;
     /// Light from the apex just above the plane, wherever the base is.
     void outward(Span window, PencilScratch& scratch) const;
 
-    const Vec3& normal() const { return n_; }
+    /// Facets that touch the plane along one of these edges hide neither side.
+    void leave_open(std::span<const std::array<Vec3, 2>> edges) { open_ = edges; }
+    /// The rays that meet a segment in the plane before the base; empty when it isn't wholly there.
+    Span window_through(const std::array<Vec3, 2>& segment) const;
+
     Vec3 direction(double t) const { return (1 - t) * e0_ + t * e1_; }
     /// The point of a plane on the line of t.
     Vec3 meet(double t, const Vec3& normal, double offset) const
@@ -73,9 +79,9 @@ private:
     enum class Part { to_base, past_base, past_apex, all };
 
     void collect(Part part, Span window, std::vector<PencilCut>& cuts) const;
+    bool is_open(const std::array<Vec3, 2>& cut) const;
     bool cut(const Facet& facet, double sign, PencilCut& result) const;
-    void block(std::span<const PencilCut> cuts, unsigned side, double least, Span window,
-               PencilScratch& scratch) const;
+    void block(std::span<const PencilCut> cuts, unsigned side, double least, Span window, PencilScratch& scratch) const;
     void trace(Part part, Span window, PencilScratch& scratch) const;
     void nearest(Span window, unsigned side, PencilScratch& scratch) const;
     void nearest_between(double from, double to, PencilScratch& scratch) const;
@@ -89,6 +95,7 @@ private:
     double height_ = 0;            ///< n · apex
     double reach_ = 0;             ///< from the apex to the base's line, m
     double snap_ = 0;
+    std::span<const std::array<Vec3, 2>> open_;
     bool valid_ = false;
 };
 

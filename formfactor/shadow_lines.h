@@ -11,25 +11,31 @@ namespace patchlight {
 
 /// Which lines are looked for, besides the EV and VE ones.
 struct ShadowLineOptions {
-    bool planes = true;  ///< where the plane of a source, or of a surface seen edge on from a source, crosses others
+    /// Where the plane of a source, or of a surface seen edge on from one, crosses others, and where two edges of one
+    /// plane are seen to pass each other in front of a source.
+    bool planes = true;
+    /// Where a blocker's corner passes another's edge in front of a source: kind VE.
+    bool blockers = true;
 };
 
 /// How much there was to do.
 struct ShadowLineCounts {
-    std::size_t pencils = 0;    ///< (apex, base) in front of a source, both in view of it or not
-    std::size_t receivers = 0;  ///< (pencil, facet) where light through a pencil ends on a facet's front
+    std::size_t pencils = 0;    ///< corners with edges that were tried
+    std::size_t receivers = 0;  ///< fronts on which light through a pencil ends, summed over pencils
 };
 
 /// The lines on surfaces that reflect across which the direct light of the sources breaks off in its first or second
-/// derivative [Heckbert92, LischinskiTampieriGreenberg92]: EV (a source's corner seen past an edge), VE (a source's edge seen
-/// past a corner) and plane (see LineKind; contacts are not among them, nor EEE: the curves where a source's edge is seen
-/// past two skew edges). Each line only where light from the source's corner or edge really arrives: what stands in
-/// between is sorted in the plane of corner and edge, exactly, on heights snapped at 1e-8 of the scene's diameter, so that
-/// what touches the plane from one side hides that side only. Corners and edges are those of the surfaces' loops;
-/// edges between coplanar surfaces and those not on an outline count as hidden by what they belong to.
-/// Lines that coincide are one (see merged_lines). A few lines may be there across which the light is smooth: where
-/// something else hides just the side that would have changed.
-/// Runs in parallel; the result depends on neither threads nor the order of surfaces.
+/// derivative [Heckbert92, LischinskiTampieriGreenberg92]: EV (a source's corner seen past an edge), VE (a source's
+/// edge seen past a corner) and plane (see LineKind). Each only where light really arrives: what stands between is
+/// sorted in the plane of corner and edge, on heights snapped at 1e-8 of the scene's diameter; what touches that plane
+/// from one side hides that side only. Edges are those of the surfaces' loops; an edge or corner that isn't on the
+/// outline of what it belongs to makes no line. Not found: contacts; EEE, the curves where an edge of a source is seen
+/// past two skew edges; edges where surfaces pierce each other; on a surface whose plane cuts a source, the events of
+/// the points where it cuts the source's rim. Missing ones cost convergence, nothing else. Where an edge and a segment
+/// of a source lie in one plane and blockers leave little of the segment visible, a line may be cut short: its ends and
+/// three places between are tried. A few lines may be there across which the light is smooth. Lines that coincide are
+/// one (see merged_lines). Runs in parallel; the result depends on neither the threads nor the order of surfaces. Time
+/// grows with sources × (edges + corners) and what stands in the way of each.
 std::vector<SurfaceLine> shadow_lines(const Scene& scene, std::span<const SurfaceId> sources,
                                       const ShadowLineOptions& options = {}, ShadowLineCounts* counts = nullptr);
 

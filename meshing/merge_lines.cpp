@@ -30,7 +30,10 @@ auto place(const SurfaceLine& l)
     return std::tuple(l.surface, l.start.x, l.start.y, l.end.x, l.end.y, weakness(l.kind));
 }
 
-double length_of(const SurfaceLine& l) { return glm::length(l.end - l.start); }
+double length_of(const SurfaceLine& l)
+{
+    return glm::length(l.end - l.start);
+}
 
 /// Ends in ascending order, so that a line and its reverse are the same.
 void turn(SurfaceLine& l)
@@ -136,7 +139,8 @@ void merge_surface(std::span<SurfaceLine> lines, double near, std::vector<Surfac
     std::vector<IndexPair> continued;  // a line, a longer one
     touching_pairs(boxes, [&](std::uint32_t i, std::uint32_t j) {
         const auto [longer, shorter] = std::minmax(owners[i], owners[j]);
-        if (longer != shorter && continues(lines[longer], lines[shorter], near)) continued.emplace_back(shorter, longer);
+        if (longer != shorter && continues(lines[longer], lines[shorter], near))
+            continued.emplace_back(shorter, longer);
         return false;
     });
     std::ranges::sort(continued);

@@ -1,7 +1,5 @@
 #include "solver/adaptive.h"
 
-#include "formfactor/shadow_lines.h"
-
 #include <chrono>
 
 namespace patchlight {
@@ -15,11 +13,12 @@ double seconds_since(Clock::time_point begin)
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// What one solve left: how it went, where the light went, and the linear reconstruction.
+/// What one solve left: how it went, where the light went, and the reconstruction.
 struct Solved {
     SolveReport report;
     EnergyBalance energy;
     VertexRadiosity vertex_B;
+    MidpointRadiosity middle_B;
 };
 
 SolveReport shoot(const Exchange& exchange, const RadiositySystem& system, Radiosity& B, const SolveOptions& options,
@@ -86,15 +85,16 @@ public:
                             : solve(B, {.solver = Solver::gauss_seidel, .tolerance = 0.02}, coarse);
     }
 
-    /// The final solve: all rays, the tight tolerance, light gathered at the vertices.
+    /// The final solve: all rays, the tight tolerance, light gathered at the elements' nodes.
     Solved solve_tightly(Radiosity& B)
     {
         Solved solved = solve(B, options_.final, options_.form_factors);
-        Reconstruction linear = stage("gather", seconds.gather, [&](const WorkMonitor& monitor) {
-            return reconstruct(exchange_, B, options_.gather, monitor);
+        Reconstruction nodes = stage("gather", seconds.gather, [&](const WorkMonitor& monitor) {
+            return reconstruct(exchange_, B, options_.gather, monitor, options_.elements);
         });
-        rays += linear.rays;
-        solved.vertex_B = std::move(linear.B);
+        rays += nodes.rays;
+        solved.vertex_B = std::move(nodes.B);
+        solved.middle_B = std::move(nodes.middle_B);
         return solved;
     }
 
@@ -190,31 +190,6 @@ bool uses_lines(const AdaptiveOptions& options)
     return options.refine == Refine::discontinuity || options.refine == Refine::both;
 }
 
-/// Emitters' light, as far as it is asked for and not too many emit.
-std::optional<DirectLight> direct_light(const Scene& scene, const AdaptiveOptions& options)
-{
-    constexpr std::size_t most_emitters = 500;
-    const std::vector<SurfaceId> sources = emitters(scene);
-    if (sources.size() > most_emitters || (options.direct == Direct::sampled && !uses_lines(options))) return {};
-    return std::optional<DirectLight>(std::in_place, scene, sources);
-}
-
-/// Where the light breaks off, for refinements that want to know.
-std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct,
-                                           const AdaptiveOptions& options)
-{
-    std::vector<Discontinuity> found;
-    if (!uses_lines(options)) return found;
-    for (const SurfaceLine& line : scene.contact_lines)
-        if (scene.material_of(line.surface).reflects()) found.push_back({line});
-    if (!direct) return found;
-    std::vector<Rgb> exitance;
-    for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
-    const auto shadows = measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
-    found.insert(found.end(), shadows.begin(), shadows.end());
-    return found;
-}
-
 RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,
                          std::span<const Discontinuity> lines, const AdaptiveOptions& options)
 {
@@ -233,9 +208,11 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                                   const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
-    const std::optional<DirectLight> emitted = direct_light(scene, options);
+    std::optional<DirectLight> emitted;
+    if (options.direct == Direct::exact || uses_lines(options)) emitted = emitters_light(scene);
     const DirectLight* direct = emitted && options.direct == Direct::exact ? &*emitted : nullptr;
-    const std::vector<Discontinuity> lines = discontinuities(scene, emitted ? &*emitted : nullptr, options);
+    std::vector<Discontinuity> lines;
+    if (uses_lines(options)) lines = discontinuities(scene, emitted ? &*emitted : nullptr);
     const auto begin = Clock::now();
     PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
@@ -257,14 +234,20 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
 
             const VertexRadiosity& vertex_B = last ? solved.vertex_B : evaluation.vertex_B;
             if (observers.on_step)
-                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.report,
-                                   evaluation.error, solved.energy,
+                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.middle_B,
+                                   solved.report, evaluation.error, solved.energy,
                                    last ? 0 : plan.bisections.size() + plan.lines.size(),
                                    count_lines(scene, mesh, lines), work.rays, work.seconds});
             if (last) {
                 const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
-                return {std::move(mesh), std::move(B),  std::move(solved.vertex_B),    std::move(evaluation.error),
-                        solved.energy,   solved.report, solved.report.converged && met};
+                return {std::move(mesh),
+                        std::move(B),
+                        std::move(solved.vertex_B),
+                        std::move(solved.middle_B),
+                        std::move(evaluation.error),
+                        solved.energy,
+                        solved.report,
+                        solved.report.converged && met};
             }
         }
         work.seconds.mesh = 0;

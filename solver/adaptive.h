@@ -41,10 +41,11 @@ struct AdaptiveOptions {
     MarkOptions mark;
     LineOptions lines;
     Refine refine = Refine::both;
-    Direct direct = Direct::exact;    ///< scenes of more than 500 emitting surfaces are sampled all the same
-    int iterations = 24;              ///< refinements at most, ≥ 1
-    double target_error = 0;          ///< stop when the estimated error is below; 0 = go on to the budget
-    std::size_t max_elements = 8000;  ///< budget of patches
+    Elements elements = Elements::linear;  ///< of the last mesh's solution; errors are estimated for linear ones
+    Direct direct = Direct::exact;         ///< scenes of more than 500 emitting surfaces are sampled all the same
+    int iterations = 24;                   ///< refinements at most, ≥ 1
+    double target_error = 0;               ///< stop when the estimated error is below; 0 = go on to the budget
+    std::size_t max_elements = 8000;       ///< budget of patches
 };
 
 /// Wall seconds of one cycle, for timing.json only.
@@ -61,6 +62,7 @@ struct AdaptiveStep {
     const PatchMesh& mesh;
     const Radiosity& B;               ///< per patch
     const VertexRadiosity& vertex_B;  ///< the linear reconstruction; before the last cycle from the estimate's few rays
+    const MidpointRadiosity& middle_B;  ///< of quadratic elements, in the last cycle; empty: linear elements
     const SolveReport& solved;
     const ErrorEstimate& error;
     const EnergyBalance& energy;
@@ -90,6 +92,7 @@ struct AdaptiveSolution {
     PatchMesh mesh;
     Radiosity B;
     VertexRadiosity vertex_B;
+    MidpointRadiosity middle_B;  ///< empty: linear elements
     ErrorEstimate error;
     EnergyBalance energy;
     SolveReport solved;

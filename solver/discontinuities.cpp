@@ -1,6 +1,8 @@
 #include "solver/discontinuities.h"
 
 #include "formfactor/direct_light.h"
+#include "formfactor/shadow_lines.h"
+#include "solver/system.h"
 
 #include <algorithm>
 #include <array>
@@ -39,7 +41,8 @@ public:
         const Vec2 way = line.end - line.start;
         const double h = std::min(step * scene_.diameter, 0.05 * glm::length(way));
         const Vec2 across = h * glm::normalize(Vec2(-way.y, way.x));
-        for (const double t : {0.25, 0.5, 0.75}) {
+        for (const double t : {0.5, 0.25, 0.75}) {
+            if (found.value > 0 || found.slope > 0) break;
             const Vec2 q = line.start + t * way;
             const OneSided left = side(line.surface, q, across, h, scratch);
             const OneSided right = side(line.surface, q, -across, h, scratch);
@@ -106,16 +109,46 @@ bool is_on_border(const Scene& scene, const SurfaceLine& line)
     });
 }
 
-}  // namespace
-
-std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
-                                         std::span<const SurfaceLine> lines)
+std::vector<Discontinuity> measure_all(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
+                                       std::span<const SurfaceLine> lines)
 {
     const JumpMeter meter(scene, direct, exitance);
     std::vector<Discontinuity> found(lines.size());
     tbb::enumerable_thread_specific<DirectLight::Scratch> scratches;
     tbb::parallel_for(std::size_t{0}, lines.size(),
                       [&](std::size_t i) { found[i] = meter.measure(lines[i], scratches.local()); });
+    return found;
+}
+
+}  // namespace
+
+double strength(const Discontinuity& line, double distance)
+{
+    return line.value + distance * (line.slope + 0.5 * distance * line.second);
+}
+
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct)
+{
+    std::vector<SurfaceLine> contacts;
+    for (const SurfaceLine& line : scene.contact_lines)
+        if (scene.material_of(line.surface).reflects()) contacts.push_back(line);
+    if (!direct) {
+        std::vector<Discontinuity> found;
+        for (const SurfaceLine& line : contacts) found.push_back({line});
+        return found;
+    }
+    std::vector<Rgb> exitance;
+    for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
+    std::vector<Discontinuity> found = measure_all(scene, *direct, exitance, contacts);
+    const auto shadows = measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
+    found.insert(found.end(), shadows.begin(), shadows.end());
+    return found;
+}
+
+std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
+                                         std::span<const SurfaceLine> lines)
+{
+    std::vector<Discontinuity> found = measure_all(scene, direct, exitance, lines);
     std::erase_if(found, [&](const Discontinuity& d) {
         return (d.value == 0 && d.slope == 0 && d.second == 0) || is_on_border(scene, d.line);
     });

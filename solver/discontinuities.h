@@ -21,9 +21,17 @@ struct Discontinuity {
     double second = 0;  ///< W/m⁴
 };
 
+/// How much the jumps change the light at `distance` from the line, W/m²: value + slope·d + second·d²/2.
+double strength(const Discontinuity& line, double distance);
+
+/// All lines on surfaces that reflect: the scene's contact lines, then those of the emitters' shadows (see
+/// shadow_lines()), with their jumps in `direct`, which must be emitters_light() of the scene. Contact lines are kept
+/// also where the direct light happens not to jump. Without `direct`: contact lines alone, jumps unknown (0).
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct);
+
 /// Measures the jumps in the exact direct light of `exitance` (W/m², one a source of `direct`): a parabola through
-/// three points on either side of the line's middle and quarters, the largest of the three. Lines without any jump
-/// beyond rounding, and those on a surface's border, are left out.
+/// three points on either side of the line's middle and, where nothing but the second derivative jumps there, of its
+/// quarters, the largest. Lines without any jump beyond rounding, and those on a surface's border, are left out.
 std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
                                          std::span<const SurfaceLine> lines);
 

@@ -14,36 +14,15 @@ double square(const Rgb& x)
     return glm::dot(x, x);
 }
 
-/// Corners first (by vertex id), then edge midpoints, then centroids.
-struct ExtraPoints {
-    std::vector<SurfacePoint> points;
-    std::vector<std::array<std::uint32_t, 3>> midpoint_of;  // of each patch's edge k
+/// Corners, middles of edges, then centroids.
+struct ExtraPoints : ElementPoints {
     std::uint32_t first_centroid = 0;
 };
 
 ExtraPoints extra_points(const Exchange& exchange)
 {
     const PatchMesh& mesh = exchange.mesh;
-    ExtraPoints extra;
-    extra.points = vertex_points(exchange);
-    extra.midpoint_of.resize(mesh.patch_count());
-    for (const PatchId p : mesh.patches()) {
-        const auto c = mesh.corners(p);
-        const auto across = mesh.neighbours(p);
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (across[k].valid() && across[k] < p) {
-                const auto back = mesh.neighbours(across[k]);
-                const auto at = static_cast<std::size_t>(std::find(back.begin(), back.end(), p) - back.begin());
-                extra.midpoint_of[p.value][k] = extra.midpoint_of[across[k].value][at];
-                continue;
-            }
-            const Vec3 middle = 0.5 * (mesh.position(c[k]) + mesh.position(c[(k + 1) % 3]));
-            extra.midpoint_of[p.value][k] = static_cast<std::uint32_t>(extra.points.size());
-            extra.points.push_back(
-                across[k].valid() ? SurfacePoint{middle, mesh.surface(p), middle}
-                                  : border_point(middle, mesh.centroid(p), mesh.surface(p), exchange.scene.diameter));
-        }
-    }
+    ExtraPoints extra{element_points(exchange)};
     extra.first_centroid = static_cast<std::uint32_t>(extra.points.size());
     for (const PatchId p : mesh.patches())
         extra.points.push_back({mesh.centroid(p), mesh.surface(p), mesh.centroid(p)});

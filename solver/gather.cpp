@@ -50,6 +50,12 @@ Vec3 moved(const Vec3& point, const Vec3& inside, double part, double least, dou
     return point + std::min(0.25, std::max(part, least * diameter / length)) * way;
 }
 
+Vec3 middle_of_edge(const PatchMesh& mesh, PatchId patch, std::size_t k)
+{
+    const auto c = mesh.corners(patch);
+    return 0.5 * (mesh.position(c[k]) + mesh.position(c[(k + 1) % 3]));
+}
+
 }  // namespace
 
 SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter)
@@ -78,35 +84,91 @@ std::vector<SurfacePoint> vertex_points(const Exchange& exchange)
     return points;
 }
 
-void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance)
+ElementPoints element_points(const Exchange& exchange)
 {
     const PatchMesh& mesh = exchange.mesh;
-    const Scene& scene = exchange.scene;
-    // Corners of the input are welded: vertices at one place have the same bits.
-    std::map<std::tuple<double, double, double, std::uint32_t>, std::vector<VertexId>> places;
-    for (const VertexId v : mesh.vertices()) {
-        if (!mesh.on_border(v)) continue;
-        const Vec3& p = mesh.position(v);
-        places[{p.x, p.y, p.z, scene.surface(mesh.surface(v)).material.value}].push_back(v);
+    ElementPoints result{vertex_points(exchange), {}};
+    result.midpoint_of.resize(mesh.patch_count());
+    for (const PatchId p : mesh.patches()) {
+        const auto across = mesh.neighbours(p);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (across[k].valid() && across[k] < p) {
+                const auto back = mesh.neighbours(across[k]);
+                const auto at = static_cast<std::size_t>(std::find(back.begin(), back.end(), p) - back.begin());
+                result.midpoint_of[p.value][k] = result.midpoint_of[across[k].value][at];
+                continue;
+            }
+            const Vec3 middle = middle_of_edge(mesh, p, k);
+            result.midpoint_of[p.value][k] = static_cast<std::uint32_t>(result.points.size());
+            result.points.push_back(
+                across[k].valid() ? SurfacePoint{middle, mesh.surface(p), middle}
+                                  : border_point(middle, mesh.centroid(p), mesh.surface(p), exchange.scene.diameter));
+        }
+    }
+    return result;
+}
+
+namespace {
+
+/// A node on its surface's border, and its entry among the irradiances.
+struct BorderNode {
+    Vec3 place{0.0};
+    SurfaceId surface;
+    std::uint32_t index = 0;
+};
+
+std::vector<BorderNode> border_vertices(const PatchMesh& mesh)
+{
+    std::vector<BorderNode> nodes;
+    for (const VertexId v : mesh.vertices())
+        if (mesh.on_border(v)) nodes.push_back({mesh.position(v), mesh.surface(v), v.value});
+    return nodes;
+}
+
+std::vector<BorderNode> border_middles(const PatchMesh& mesh, const ElementPoints& points)
+{
+    std::vector<BorderNode> nodes;
+    for (const PatchId p : mesh.patches()) {
+        const auto across = mesh.neighbours(p);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!across[k].valid())
+                nodes.push_back({middle_of_edge(mesh, p, k), mesh.surface(p), points.midpoint_of[p.value][k]});
+    }
+    return nodes;
+}
+
+void share(const Scene& scene, double crease_angle, std::span<const BorderNode> nodes, std::vector<Rgb>& irradiance)
+{
+    // Corners of the input are welded: nodes at one place have the same bits.
+    std::map<std::tuple<double, double, double, std::uint32_t>, std::vector<BorderNode>> places;
+    for (const BorderNode& node : nodes) {
+        const Vec3& p = node.place;
+        places[{p.x, p.y, p.z, scene.surface(node.surface).material.value}].push_back(node);
     }
     const double cosine = std::cos(crease_angle * std::numbers::pi / 180);
     for (const auto& [place, group] : places) {
         if (group.size() < 2) continue;
         std::vector<Rgb> shared;
-        for (const VertexId v : group) {
+        for (const BorderNode& v : group) {
             Rgb sum(0.0);
             double count = 0;
-            for (const VertexId w : group)
-                if ((v == w || mesh.surface(v) != mesh.surface(w)) &&
-                    glm::dot(scene.surface(mesh.surface(v)).frame.n, scene.surface(mesh.surface(w)).frame.n) >=
-                        cosine) {
-                    sum += irradiance[w.value];
+            for (const BorderNode& w : group)
+                if ((v.index == w.index || v.surface != w.surface) &&
+                    glm::dot(scene.surface(v.surface).frame.n, scene.surface(w.surface).frame.n) >= cosine) {
+                    sum += irradiance[w.index];
                     ++count;
                 }
-            shared.push_back(count > 0 ? sum / count : irradiance[v.value]);
+            shared.push_back(count > 0 ? sum / count : irradiance[v.index]);
         }
-        for (std::size_t k = 0; k < group.size(); ++k) irradiance[group[k].value] = shared[k];
+        for (std::size_t k = 0; k < group.size(); ++k) irradiance[group[k].index] = shared[k];
     }
+}
+
+}  // namespace
+
+void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance)
+{
+    share(exchange.scene, crease_angle, border_vertices(exchange.mesh), irradiance);
 }
 
 VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> irradiance)
@@ -120,11 +182,24 @@ VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> 
 }
 
 Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
-                           const WorkMonitor& monitor)
+                           const WorkMonitor& monitor, Elements elements)
 {
-    GatheredLight gathered = gather_irradiance(exchange, B, vertex_points(exchange), options, monitor);
+    const bool quadratic = elements == Elements::quadratic;
+    const ElementPoints nodes = quadratic ? element_points(exchange) : ElementPoints{vertex_points(exchange), {}};
+    GatheredLight gathered = gather_irradiance(exchange, B, nodes.points, options, monitor);
     share_irradiance(exchange, options.crease_angle, gathered.irradiance);
-    return {linear_radiosity(exchange, gathered.irradiance), gathered.rays};
+    Reconstruction result{linear_radiosity(exchange, gathered.irradiance), {}, gathered.rays};
+    if (!quadratic) return result;
+    const PatchMesh& mesh = exchange.mesh;
+    share(exchange.scene, options.crease_angle, border_middles(mesh, nodes), gathered.irradiance);
+    result.middle_B = MidpointRadiosity(mesh.patch_count());
+    for (const PatchId p : mesh.patches()) {
+        const Material& material = exchange.scene.material_of(mesh.surface(p));
+        for (std::size_t k = 0; k < 3; ++k)
+            result.middle_B[p][k] =
+                material.emission + material.reflectance * gathered.irradiance[nodes.midpoint_of[p.value][k]];
+    }
+    return result;
 }
 
 }  // namespace patchlight

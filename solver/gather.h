@@ -2,6 +2,7 @@
 
 #include "solver/system.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,15 +44,24 @@ SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surfa
 /// Where light is gathered for each vertex: moved into its surface.
 std::vector<SurfacePoint> vertex_points(const Exchange& exchange);
 
-/// Linear elements: B = E + ρ H gathered at every vertex, never averaged from neighbours, never across a surface's
-/// border; except that facets of a curved object share their irradiance at common vertices, within one material
-/// and the crease angle. Throws Interrupted.
+/// Those, and the middle of every edge: once for the two patches that meet there, moved inside on borders and contact
+/// lines.
+struct ElementPoints {
+    std::vector<SurfacePoint> points;                       ///< vertices first, by id
+    std::vector<std::array<std::uint32_t, 3>> midpoint_of;  ///< into points: of each patch's edge k
+};
+ElementPoints element_points(const Exchange& exchange);
+
+/// B = E + ρ H gathered at every node of the elements, never averaged from neighbours, never across a surface's
+/// border; except that facets of a curved object share their irradiance at common nodes, within one material
+/// and the crease angle. The vertices' values don't depend on `elements`. Throws Interrupted.
 struct Reconstruction {
     VertexRadiosity B;
+    MidpointRadiosity middle_B;  ///< empty: linear elements
     std::size_t rays = 0;
 };
 Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
-                           const WorkMonitor& monitor = {});
+                           const WorkMonitor& monitor = {}, Elements elements = Elements::linear);
 
 /// B = E + ρ H at every vertex; `irradiance` begins with one value a vertex.
 VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> irradiance);

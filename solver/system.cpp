@@ -32,6 +32,14 @@ Radiosity emittance(const Scene& scene, const PatchMesh& mesh)
     return E;
 }
 
+std::optional<DirectLight> emitters_light(const Scene& scene)
+{
+    constexpr std::size_t most_emitters = 500;
+    const std::vector<SurfaceId> sources = emitters(scene);
+    if (sources.size() > most_emitters) return {};
+    return std::optional<DirectLight>(std::in_place, scene, sources);
+}
+
 Rgb direct_irradiance(const Scene& scene, const DirectLight& direct, const Vec3& place, SurfaceId surface,
                       DirectLight::Scratch& scratch)
 {

@@ -5,6 +5,8 @@
 #include "solver/radiosity.h"
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace patchlight {
 
@@ -18,6 +20,12 @@ struct Exchange {
     const DirectLight* direct = nullptr;  ///< emitters' light exactly; null: sampled like all else
 };
 
+/// The surfaces that emit.
+std::vector<SurfaceId> emitters(const Scene& scene);
+
+/// Exact light of the scene's emitters, in the order of emitters(); nothing when more than 500 surfaces emit.
+std::optional<DirectLight> emitters_light(const Scene& scene);
+
 /// The emitters' light that arrives at a point, exactly, W/m².
 Rgb direct_irradiance(const Scene& scene, const DirectLight& direct, const Vec3& place, SurfaceId surface,
                       DirectLight::Scratch& scratch);
@@ -30,9 +38,6 @@ struct RadiositySystem {
     PatchField<Rgb> direct;  ///< the emitters' light at each patch, exactly (W/m², mean); empty: F brings it
     FormFactorMatrix F;      ///< empty when rows are only computed on demand
 };
-
-/// The surfaces that emit.
-std::vector<SurfaceId> emitters(const Scene& scene);
 
 /// B = E.
 Radiosity emittance(const Scene& scene, const PatchMesh& mesh);

@@ -93,8 +93,8 @@ std::vector<View> candidates(const Scene& scene, const RayCaster& caster)
         return views;
     }
     const double away = 0.5 * scene.diameter / std::tan(20.0 * 3.14159265358979 / 180);
-    for (const Vec3& side : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0},
-                             Vec3{1, .7, 1}, Vec3{-1, .7, 1}, Vec3{1, .7, -1}, Vec3{-1, .7, -1}}) {
+    for (const Vec3& side : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0},
+                             Vec3{0, -1, 0}, Vec3{1, .7, 1}, Vec3{-1, .7, 1}, Vec3{1, .7, -1}, Vec3{-1, .7, -1}}) {
         views.push_back(looking(center + away * glm::normalize(side), center, 40));
     }
     return views;

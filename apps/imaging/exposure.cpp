@@ -43,6 +43,12 @@ double srgb_encoded(double linear)
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
+double srgb_decoded(double encoded)
+{
+    encoded = std::clamp(encoded, 0.0, 1.0);
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
 Image to_srgb(const Image& radiance, double exposure)
 {
     Image result(radiance.width, radiance.height);

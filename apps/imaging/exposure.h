@@ -15,7 +15,8 @@ double white_at(double exposure);
 /// Linear radiance × 2^EV, cut at 1, as sRGB values between 0 and 1.
 Image to_srgb(const Image& radiance, double exposure);
 
-/// The sRGB curve.
+/// The sRGB curve, and back.
 double srgb_encoded(double linear);
+double srgb_decoded(double encoded);
 
 }  // namespace patchlight

@@ -90,8 +90,7 @@ bool draw_text(Image& image, int x, int y, const std::string& text, int size, co
 {
     using OIIO::ImageBufAlgo::TextAlignX;
     OIIO::ImageBuf canvas(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeFloat), image.rgb.data());
-    const std::vector<float> ink{static_cast<float>(color.r), static_cast<float>(color.g),
-                                 static_cast<float>(color.b)};
+    const std::vector<float> ink{static_cast<float>(color.r), static_cast<float>(color.g), static_cast<float>(color.b)};
     const auto side = align == TextAlign::left     ? TextAlignX::Left
                       : align == TextAlign::center ? TextAlignX::Center
                                                    : TextAlignX::Right;

@@ -1,5 +1,7 @@
 #include "apps/imaging/picture.h"
 
+#include "apps/imaging/exposure.h"
+#include "apps/imaging/line_overlay.h"
 #include "apps/imaging/view_rays.h"
 
 #include <tbb/blocked_range.h>
@@ -47,24 +49,20 @@ Sample shade(const ShownSolution& solution, const ViewRays& rays, const Vec3& di
         return sample;
     }
     sample.patch = patch.value;
-    if (how == Shade::flat) {
-        sample.radiance = solution.B[patch] / std::numbers::pi;
-        return sample;
-    }
-    const auto weights = solution.locator.barycentric(patch, *q);
-    const auto corners = solution.mesh.corners(patch);
-    Rgb B{0.0};
-    for (int k = 0; k < 3; ++k) {
-        B += weights[k] * solution.vertex_B[corners[k]];
-    }
-    sample.radiance = B / std::numbers::pi;
+    sample.radiance = (how == Shade::flat ? solution.B[patch] : solution.light().at(patch, *q)) / std::numbers::pi;
     return sample;
+}
+
+/// What is drawn as white.
+double full_ink(double white)
+{
+    return std::isfinite(white) ? white : 1.0;
 }
 
 /// A line that can be told from what it crosses, on bright ground and on dark.
 Rgb inked(const Rgb& ground, double white)
 {
-    const double full = std::isfinite(white) ? white : 1.0;
+    const double full = full_ink(white);
     return luminance(ground) > 0.04 * full ? ground * 0.18 : ground + Rgb(0.09 * full);
 }
 
@@ -73,6 +71,13 @@ public:
     RowShader(const ShownSolution& solution, const ViewHits& hits, const PictureOptions& options)
         : solution_(solution), hits_(hits), options_(options), rays_(hits.view, hits.width, hits.height)
     {
+        if (options.patch_borders) {
+            lines_ = line_samples(solution.mesh, hits);
+            for (const LineKind kind : line_kinds) {
+                const Rgb c = line_color(kind);
+                inks_.push_back(full_ink(options.white) * Rgb(srgb_decoded(c.r), srgb_decoded(c.g), srgb_decoded(c.b)));
+            }
+        }
     }
 
     /// The samples of one row of the sample grid; past the last row: that one again.
@@ -88,15 +93,20 @@ public:
         }
     }
 
-    void add(const std::vector<Sample>& row, const std::vector<Sample>& below, int y, Image& image) const
+    /// `row` and the one below it, which are rows `number` and `number` + 1 of the sample grid.
+    void add(const std::vector<Sample>& row, const std::vector<Sample>& below, int number, Image& image) const
     {
         const double share = 1.0 / (hits_.samples * hits_.samples);
+        const std::size_t first = static_cast<std::size_t>(number) * row.size();
         for (int x = 0; x < static_cast<int>(row.size()); ++x) {
             Rgb radiance = glm::min(row[x].radiance, Rgb(options_.white));
             if (options_.patch_borders && borders(row, below, x)) {
                 radiance = inked(radiance, options_.white);
             }
-            float* pixel = image.pixel(x / hits_.samples, y);
+            if (!lines_.empty() && lines_[first + x] > 0) {
+                radiance = inks_[lines_[first + x] - 1U];
+            }
+            float* pixel = image.pixel(x / hits_.samples, number / hits_.samples);
             for (int band = 0; band < 3; ++band) {
                 pixel[band] += static_cast<float>(share * radiance[band]);
             }
@@ -114,6 +124,8 @@ private:
     const ViewHits& hits_;
     const PictureOptions& options_;
     ViewRays rays_;
+    std::vector<std::uint8_t> lines_;  ///< see line_samples(); empty: none are drawn
+    std::vector<Rgb> inks_;            ///< by LineKind
 };
 
 void check_size(int width, int height, int samples)
@@ -162,7 +174,7 @@ Image shade_view(const ShownSolution& solution, const ViewHits& hits, const Pict
                 if (options.patch_borders || s + 1 < hits.samples) {
                     shader.samples_of(y * hits.samples + s + 1, below);
                 }
-                shader.add(row, below, y, image);
+                shader.add(row, below, y * hits.samples + s, image);
                 std::swap(row, below);
             }
         }

@@ -2,9 +2,7 @@
 
 #include "apps/imaging/image.h"
 #include "formfactor/ray_caster.h"
-#include "meshing/patch_locator.h"
-#include "meshing/patch_mesh.h"
-#include "solver/radiosity.h"
+#include "solver/element_light.h"
 
 #include <cstdint>
 #include <limits>
@@ -13,16 +11,16 @@
 namespace patchlight {
 
 enum class Shade {
-    gouraud,  ///< the linear reconstruction
+    gouraud,  ///< the elements' reconstruction, linear or quadratic
     flat      ///< one value a patch
 };
 
 struct PictureOptions {
-    int width = 640;             ///< pixels, 1 … largest_picture_side
+    int width = 640;  ///< pixels, 1 … largest_picture_side
     int height = 640;
-    int samples = 2;             ///< rays along each side of a pixel, 1 … 8; 1 = through the pixel's centre
+    int samples = 2;  ///< rays along each side of a pixel, 1 … 8; 1 = through the pixel's centre
     Shade shade = Shade::gouraud;
-    bool patch_borders = false;  ///< draws the mesh's edges over the shading
+    bool patch_borders = false;  ///< draws the mesh's edges over the shading, its lines in colours (line_overlay.h)
     double white = std::numeric_limits<double>::infinity();  ///< radiance at which a sample is cut before averaging,
                                                              ///< W/(m²·sr): keeps the edges of lamps smooth in a PNG
 };
@@ -34,6 +32,9 @@ struct ShownSolution {
     const PatchLocator& locator;
     const Radiosity& B;
     const VertexRadiosity& vertex_B;
+    const MidpointRadiosity* middle_B = nullptr;  ///< null or empty: linear elements
+
+    ElementLight light() const { return {mesh, locator, vertex_B, middle_B}; }
 };
 
 /// What each sample of a picture shows. It doesn't depend on the mesh: one tracing serves all cycles of a run.

@@ -36,4 +36,11 @@ Vec3 ViewRays::direction(double x, double y) const
     return glm::normalize(forward_ + across * right_ + below * down_);
 }
 
+Vec2 ViewRays::project(const Vec3& p) const
+{
+    const Vec3 d = p - from_;
+    const double scale = half_height_ / (glm::dot(d, forward_) * glm::dot(right_, right_));
+    return {half_width_ + scale * glm::dot(d, right_), half_height_ + scale * glm::dot(d, down_)};
+}
+
 }  // namespace patchlight

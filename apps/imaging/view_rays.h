@@ -18,6 +18,11 @@ public:
     /// Through (x, y) in pixels, from the left and the top: (0.5, 0.5) is the centre of the first pixel. Unit length.
     Vec3 direction(double x, double y) const;
 
+    /// How far a point is in front of the camera, along the direction of view.
+    double depth(const Vec3& p) const { return glm::dot(p - from_, forward_); }
+    /// Where a point is seen, in pixels as in direction(); its depth must be positive.
+    Vec2 project(const Vec3& p) const;
+
 private:
     Vec3 from_;
     Vec3 forward_;

@@ -47,6 +47,7 @@ struct DemoCommand {
 
 struct InspectCommand {
     SceneArguments scene;
+    bool lines = false;
     bool json = false;
 };
 

@@ -1,5 +1,6 @@
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
+#include "apps/patchlight/inspect_lines.h"
 #include "apps/patchlight/scene_input.h"
 #include "apps/run/stored_scene.h"
 
@@ -150,8 +151,14 @@ int run_command(const InspectCommand& command, Session& session)
     for (const std::string& warning : warnings) {
         session.messages.warning(warning);
     }
-    const Json all = inspection(input, hits, warnings);
-    write_result(command.json ? all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : table_of(all, input));
+    Json all = inspection(input, hits, warnings);
+    std::vector<Discontinuity> lines;
+    if (command.lines) {
+        lines = strongest_lines(input.scene);
+        all["lines"] = json_of(input.scene, lines);
+    }
+    write_result(command.json ? all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"
+                              : table_of(all, input) + (command.lines ? table_of(input.scene, lines) : ""));
     return 0;
 }
 

@@ -18,7 +18,7 @@ constexpr const char* run_json = "print run.json instead of a summary";
 /// Words that are only understood once everything has been read.
 struct Texts {
     SceneTexts scene;
-    std::string refine = "both", direct = "exact", solver = "gauss-seidel", method = "hemisphere",
+    std::string refine = "both", direct = "exact", elements = "linear", solver = "gauss-seidel", method = "hemisphere",
                 indicator = "residual", marking = "doerfler", directions = "stratified", order = "unshot-power",
                 pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from, to,
                 up = "0,1,0";
@@ -64,6 +64,11 @@ void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
 void add_light(CLI::App& app, SolveCommand& c, Texts& t)
 {
     AdaptiveOptions& o = c.options;
+    app.add_option("--elements", t.elements,
+                   "of the final solution: quadratic ones have nodes at the middles of edges, too; the estimated error "
+                   "stays that of linear ones")
+        ->check(CLI::IsMember(words(element_names())))
+        ->capture_default_str();
     app.add_option("--direct", t.direct, "how the emitters' light is found: their visible part exactly, or by rays")
         ->check(CLI::IsMember(words(direct_names())))
         ->capture_default_str();
@@ -133,6 +138,7 @@ void finish_solve(SolveCommand& c, const Texts& t)
     finish_scene(c.scene, t.scene);
     AdaptiveOptions& o = c.options;
     o.refine = mode_of(refine_names(), t.refine);
+    o.elements = mode_of(element_names(), t.elements);
     o.direct = mode_of(direct_names(), t.direct);
     o.final.solver = mode_of(solver_names(), t.solver);
     // Shots are dear: a sweep of gathering costs what a few of them do.
@@ -182,10 +188,11 @@ void add_render(CLI::App& app, RenderCommand& c, Texts& t)
         ->check(number_between(0.1, 170))
         ->type_name("DEG");
     app.add_option("--size", t.size, "of the picture [640 high, as wide as the camera says or 640]")->type_name("WxH");
-    app.add_option("--shade", t.shade, "linear reconstruction, or one value a patch")
+    app.add_option("--shade", t.shade, "the elements' reconstruction, or one value a patch")
         ->check(CLI::IsMember({"gouraud", "flat"}))
         ->capture_default_str();
-    app.add_flag("--wireframe", c.wireframe, "draw the patches' edges [off]");
+    app.add_flag("--wireframe", c.wireframe,
+                 "draw the patches' edges, those on lines where light breaks off in colours [off]");
     app.add_option("--exposure", t.exposure, "stops, or auto; an .exr is always linear")
         ->type_name("EV|auto")
         ->capture_default_str();
@@ -267,6 +274,7 @@ struct Parser {
     {
         auto& c = *app.add_subcommand("inspect", "What a scene holds, and what was mended or left out");
         add_scene(c, inspect.scene, inspect_texts);
+        c.add_flag("--lines", inspect.lines, "also the lines along which light breaks off, the strongest first [off]");
         c.add_flag("--json", inspect.json, "print JSON [off]");
     }
 

@@ -1,6 +1,7 @@
 #include "apps/patchlight/run_pictures.h"
 
 #include "apps/imaging/exposure.h"
+#include "apps/imaging/line_overlay.h"
 #include "apps/run/stored_scene.h"
 
 #include <fmt/format.h>
@@ -33,7 +34,11 @@ Image RunPictures::srgb(const ShownSolution& solution, double exposure, bool pat
     PictureOptions options;
     options.white = white_at(exposure);
     options.patch_borders = patch_borders;
-    return to_srgb(shade_view(solution, fine_, options), exposure);
+    Image picture = to_srgb(shade_view(solution, fine_, options), exposure);
+    if (patch_borders) {
+        draw_line_legend(solution.mesh, picture);
+    }
+    return picture;
 }
 
 std::vector<unsigned char> RunPictures::png(const ShownSolution& solution, double exposure, bool patch_borders) const

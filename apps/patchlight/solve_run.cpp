@@ -145,14 +145,14 @@ void SolveRun::on_step(const AdaptiveStep& step)
 {
     CycleRecord record = record_of(step);
     const std::string bytes =
-        encode_solution(input_.scene, step.mesh, step.B, step.vertex_B, step.error.eta, step.error.edge);
+        encode_solution(input_.scene, step.mesh, step.B, step.vertex_B, step.error.eta, step.error.edge, step.middle_B);
     record.solution_sha256 = sha256_hex(bytes);
     folder_.write_in_cycle(step.cycle, "solution.glb", bytes);
     session_.interruption.check();
     if (pictures_) {
         const auto start = Clock::now();
         const PatchLocator locator(step.mesh);
-        const ShownSolution shown{input_.scene, step.mesh, locator, step.B, step.vertex_B};
+        const ShownSolution shown{input_.scene, step.mesh, locator, step.B, step.vertex_B, &step.middle_B};
         if (folder_.record().cycles.empty()) {
             exposure_ = pictures_->exposure_for(shown);
         }
@@ -184,8 +184,8 @@ void SolveRun::write_pictures(const StoredSolution& last)
     const RunRecord record = folder_.record();
     const StoredSolution first = stored(record.cycles.front().cycle);
     const PatchLocator first_locator(first.mesh), last_locator(last.mesh);
-    const ShownSolution before{first.scene, first.mesh, first_locator, first.B, first.vertex_B};
-    const ShownSolution after{last.scene, last.mesh, last_locator, last.B, last.vertex_B};
+    const ShownSolution before{first.scene, first.mesh, first_locator, first.B, first.vertex_B, &first.middle_B};
+    const ShownSolution after{last.scene, last.mesh, last_locator, last.B, last.vertex_B, &last.middle_B};
     const Image left = pictures_->srgb(before, exposure_), right = pictures_->srgb(after, exposure_);
     write_picture("before.png", encode_png(left));
     write_picture("after.png", encode_png(right));

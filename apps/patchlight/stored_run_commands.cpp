@@ -1,5 +1,6 @@
 #include "apps/imaging/exposure.h"
 #include "apps/imaging/image_file.h"
+#include "apps/imaging/line_overlay.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/run_pictures.h"
 #include "apps/patchlight/usage_error.h"
@@ -58,7 +59,7 @@ int run_command(const RenderCommand& command, Session& session)
     session.interruption.check();
     const RayCaster caster(stored.scene);
     const PatchLocator locator(stored.mesh);
-    const ShownSolution shown{stored.scene, stored.mesh, locator, stored.B, stored.vertex_B};
+    const ShownSolution shown{stored.scene, stored.mesh, locator, stored.B, stored.vertex_B, &stored.middle_B};
     const View view = render_view(command, stored.scene, caster);
     const auto [width, height] = picture_size(command.size, view);
     PictureOptions options{.width = width, .height = height, .samples = 1, .shade = command.shade};
@@ -78,7 +79,10 @@ int run_command(const RenderCommand& command, Session& session)
     options.samples = 2;
     options.patch_borders = command.wireframe;
     options.white = white_at(exposure);
-    const Image picture = to_srgb(render_picture(shown, caster, view, options), exposure);
+    Image picture = to_srgb(render_picture(shown, caster, view, options), exposure);
+    if (command.wireframe) {
+        draw_line_legend(stored.mesh, picture);
+    }
     session.interruption.check();
     session.writer.write(folder_first(command.image), encode_png(picture));
     return 0;
@@ -109,10 +113,11 @@ int run_command(const ExportCommand& command, Session& session)
 {
     const StoredSolution stored = solution_of(open_run(command.run), {});
     session.interruption.check();
-    const std::string bytes = command.format == "ply"   ? encode_ply(stored)
-                              : command.format == "csv" ? encode_csv(stored)
-                                                        : encode_solution(stored.scene, stored.mesh, stored.B,
-                                                                          stored.vertex_B, stored.eta, stored.edge);
+    const std::string bytes = command.format == "ply" ? encode_ply(stored)
+                              : command.format == "csv"
+                                  ? encode_csv(stored)
+                                  : encode_solution(stored.scene, stored.mesh, stored.B, stored.vertex_B, stored.eta,
+                                                    stored.edge, stored.middle_B);
     session.writer.write(folder_first(command.output), bytes);
     return 0;
 }

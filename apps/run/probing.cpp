@@ -105,16 +105,8 @@ ProbeAnswer SurfaceProbe::answer(SurfaceId surface, const Vec3& p) const
 {
     ProbeAnswer result;
     result.surface = surface;
-    const Vec2 q = solution_.scene.surface(surface).frame.to_plane(p);
-    const PatchId patch = locator_.locate(surface, static_cast<float>(q.x), static_cast<float>(q.y));
-    if (!patch.valid()) {
-        return result;
-    }
-    const auto weights = locator_.barycentric(patch, q);
-    const auto corners = solution_.mesh.corners(patch);
-    for (int k = 0; k < 3; ++k) {
-        result.B += weights[k] * solution_.vertex_B[corners[k]];
-    }
+    const ElementLight light{solution_.mesh, locator_, solution_.vertex_B, &solution_.middle_B};
+    result.B = light.at(surface, solution_.scene.surface(surface).frame.to_plane(p));
     return result;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/run/stored_solution.h"
-#include "meshing/patch_locator.h"
+#include "solver/element_light.h"
 
 #include <optional>
 #include <string>
@@ -29,7 +29,7 @@ std::vector<ProbePoint> read_points(std::string_view text, const std::string& na
 
 /// What a point shows.
 struct ProbeAnswer {
-    Rgb B{0.0};  ///< W/m², the linear reconstruction
+    Rgb B{0.0};  ///< W/m², the elements' reconstruction
     SurfaceId surface;
 };
 

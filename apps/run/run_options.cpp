@@ -17,6 +17,12 @@ const ModeNames<Direct>& direct_names()
     return names;
 }
 
+const ModeNames<Elements>& element_names()
+{
+    static const ModeNames<Elements> names{{"linear", Elements::linear}, {"quadratic", Elements::quadratic}};
+    return names;
+}
+
 const ModeNames<Solver>& solver_names()
 {
     static const ModeNames<Solver> names{
@@ -109,6 +115,7 @@ Json json_of(const SolveOptions& options)
 Json json_of(const AdaptiveOptions& o)
 {
     return {{"refine", name_of(refine_names(), o.refine)},
+            {"elements", name_of(element_names(), o.elements)},
             {"direct", name_of(direct_names(), o.direct)},
             {"iterations", o.iterations},
             {"target_error", o.target_error},

@@ -20,6 +20,7 @@ using ModeNames = std::vector<std::pair<std::string, Mode>>;
 
 const ModeNames<Refine>& refine_names();
 const ModeNames<Direct>& direct_names();
+const ModeNames<Elements>& element_names();
 const ModeNames<Solver>& solver_names();
 /// Those that a solve offers.
 const ModeNames<FormFactorMethod>& form_factor_names();

@@ -47,6 +47,9 @@ std::vector<std::uint32_t> numbers_of(std::span<const MeshLine> lines)
 
 std::vector<MeshLine> lines_in(const ByteViews& views)
 {
+    if (!views.contains("lines")) {  // empty arrays aren't stored
+        return {};
+    }
     const std::vector<std::uint32_t> numbers = integers_in(views, "lines");
     if (numbers.size() % line_numbers != 0) {
         throw SceneError("solution", "the array \"lines\" is cut short");
@@ -92,6 +95,16 @@ Values of_size(Values values, std::size_t size)
     return values;
 }
 
+MidpointRadiosity midpoints_in(const ByteViews& views, std::size_t patches)
+{
+    const std::vector<Rgb> values = of_size(vectors_in(views, "midpoint_radiosity"), 3 * patches);
+    MidpointRadiosity middle_B(patches);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        middle_B[PatchId(i / 3)][i % 3] = values[i];
+    }
+    return middle_B;
+}
+
 StoredSolution restore(const ByteViews& views)
 {
     StoredSolution stored;
@@ -100,6 +113,9 @@ StoredSolution restore(const ByteViews& views)
     const std::size_t patches = stored.mesh.patch_count(), vertices = stored.mesh.vertex_count();
     stored.B = Radiosity(of_size(vectors_in(views, "patch_radiosity"), patches));
     stored.vertex_B = VertexRadiosity(of_size(vectors_in(views, "vertex_radiosity"), vertices));
+    if (views.contains("midpoint_radiosity")) {
+        stored.middle_B = midpoints_in(views, patches);
+    }
     stored.eta = PatchField<double>(of_size(doubles_in(views, "eta"), patches));
     stored.edge = PatchField<std::uint8_t>(patches);
     const std::vector<std::uint32_t> edges = of_size(integers_in(views, "edge"), patches);
@@ -116,7 +132,7 @@ StoredSolution restore(const ByteViews& views)
 
 std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Radiosity& B,
                             const VertexRadiosity& vertex_B, const PatchField<double>& eta,
-                            const PatchField<std::uint8_t>& edge)
+                            const PatchField<std::uint8_t>& edge, const MidpointRadiosity& middle_B)
 {
     const PatchMeshArrays& arrays = mesh.arrays();
     std::vector<std::uint32_t> corners;
@@ -132,6 +148,10 @@ std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Rad
     views["vertex_surface"] = bytes_of(surface_values(arrays.vertex_surface));
     views["patch_radiosity"] = bytes_of(B.values());
     views["vertex_radiosity"] = bytes_of(vertex_B.values());
+    if (!middle_B.empty()) {
+        views["midpoint_radiosity"] =
+            bytes_of(std::span<const Rgb>(middle_B.values().front().data(), 3 * middle_B.size()));
+    }
     views["eta"] = bytes_of(eta.values());
     views["edge"] = bytes_of(std::vector<std::uint32_t>(edge.values().begin(), edge.values().end()));
     views["lines"] = bytes_of(numbers_of(mesh.lines()));

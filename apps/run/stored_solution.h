@@ -15,6 +15,7 @@ struct StoredSolution {
     PatchMesh mesh;
     Radiosity B;
     VertexRadiosity vertex_B;
+    MidpointRadiosity middle_B;     ///< empty: linear elements
     PatchField<double> eta;         ///< W/m²·m, as in ErrorEstimate
     PatchField<std::uint8_t> edge;  ///< as in ErrorEstimate
 };
@@ -24,7 +25,7 @@ struct StoredSolution {
 /// doubles and ids in bufferViews whose numbers stand in `extras.patchlight.views`.
 std::string encode_solution(const Scene& scene, const PatchMesh& mesh, const Radiosity& B,
                             const VertexRadiosity& vertex_B, const PatchField<double>& eta,
-                            const PatchField<std::uint8_t>& edge);
+                            const PatchField<std::uint8_t>& edge, const MidpointRadiosity& middle_B = {});
 
 /// Reads it back, equal to the bit. `name` is used in messages. Throws SceneError ("solution") for anything
 /// that isn't a whole stored solution; opens no other file.
