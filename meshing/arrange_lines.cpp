@@ -16,6 +16,9 @@ namespace {
 /// Rounds end when pieces do; this is for what rounding might chase in circles.
 constexpr int most_rounds = 40;
 
+/// How far a point may be from the border that it was put on: both are rounded to 2⁻³⁰.
+constexpr double border_rounding = 2e-9;
+
 /// The points, and which of them is near a place: a grid of cells as wide as `merge`.
 class WeldedPoints {
 public:
@@ -24,10 +27,12 @@ public:
         for (const Vec2& q : given) add(q);
     }
 
-    std::uint32_t weld(const Vec2& place)
+    /// The nearest point that will do, or a new one.
+    template <class Accepted>
+    std::uint32_t weld(const Vec2& place, const Accepted& accepted)
     {
         const Vec2 q = MeshingPlane::rounded(place);
-        if (const auto near = nearest(q)) return *near;
+        if (const auto near = nearest(q, accepted)) return *near;
         add(q);
         return static_cast<std::uint32_t>(points.size() - 1);
     }
@@ -49,7 +54,8 @@ private:
         points.push_back(q);
     }
 
-    std::optional<std::uint32_t> nearest(const Vec2& q) const
+    template <class Accepted>
+    std::optional<std::uint32_t> nearest(const Vec2& q, const Accepted& accepted) const
     {
         std::optional<std::uint32_t> best;
         double least = merge_;
@@ -59,7 +65,7 @@ private:
                 const auto cell = cells_.find({x, y});
                 if (cell == cells_.end()) continue;
                 for (const std::uint32_t i : cell->second)
-                    if (const double d = glm::distance(points[i], q); d < least) {
+                    if (const double d = glm::distance(points[i], q); d < least && accepted(i)) {
                         least = d;
                         best = i;
                     }
@@ -127,8 +133,18 @@ private:
                 nearest = on;
             }
         }
-        const std::uint32_t point = points_.weld(nearest);
+        const std::uint32_t point = points_.weld(nearest, [](std::uint32_t) { return true; });
         if (point == on_border_.size()) on_border_.push_back(least < merge_);
+        return point;
+    }
+
+    /// A point of the border: the border never bends to one near it, on another border perhaps.
+    std::uint32_t weld_on(const PlanePiece& border, const Vec2& place)
+    {
+        const std::uint32_t point = points_.weld(place, [&](std::uint32_t p) {
+            return p == border.points[0] || p == border.points[1] || goes_past(border, p);
+        });
+        if (point == on_border_.size()) on_border_.push_back(true);
         return point;
     }
 
@@ -182,7 +198,7 @@ private:
         if (piece.border && !on_border_[point]) return false;
         const Vec2 &a = at(piece.points[0]), &b = at(piece.points[1]), &q = at(point);
         const double t = glm::dot(q - a, b - a) / glm::dot(b - a, b - a);
-        return t > 0 && t < 1 && glm::distance(q, a + t * (b - a)) < merge_;
+        return t > 0 && t < 1 && glm::distance(q, a + t * (b - a)) < (piece.border ? border_rounding : merge_);
     }
 
     void find_crossings(const std::vector<Box3>& boxes, std::vector<std::pair<std::uint32_t, std::uint32_t>>& divisions)
@@ -194,7 +210,10 @@ private:
         });
         for (const auto& [i, k] : pairs) {
             const auto &p = pieces_[i].points, &q = pieces_[k].points;
-            const std::uint32_t point = weld(*crossing(at(p[0]), at(p[1]), at(q[0]), at(q[1])));
+            const Vec2 place = *crossing(at(p[0]), at(p[1]), at(q[0]), at(q[1]));
+            const std::uint32_t point = pieces_[i].border   ? weld_on(pieces_[i], place)
+                                        : pieces_[k].border ? weld_on(pieces_[k], place)
+                                                            : weld(place);
             if (point != p[0] && point != p[1]) divisions.emplace_back(i, point);
             if (point != q[0] && point != q[1]) divisions.emplace_back(k, point);
         }

@@ -38,10 +38,6 @@ void check_triangles(const PatchMeshArrays& arrays)
                 throw std::invalid_argument("patch mesh: a triangle names a vertex that isn't its surface's");
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<std::pair<std::size_t, std::size_t>> line_ranges(const PatchMeshArrays& arrays, std::size_t surfaces)
 {
     std::vector<std::pair<std::size_t, std::size_t>> ranges(surfaces);
@@ -56,16 +52,21 @@ std::vector<std::pair<std::size_t, std::size_t>> line_ranges(const PatchMeshArra
     return ranges;
 }
 
-void check_lines(const TriMesh& mesh, const std::vector<MeshLine>& lines)
+void check_lines(const TriMesh& mesh, const PatchMeshArrays& arrays)
 {
     const auto vertex = [&](std::uint32_t v) {
         if (v >= mesh.n_vertices()) throw std::invalid_argument("patch mesh: a line names no vertex");
         return OpenMesh::VertexHandle(static_cast<int>(v));
     };
-    for (const MeshLine& line : lines)
+    for (const MeshLine& line : arrays.lines) {
         for (const auto& [from, to] : {line.left, line.right})
             if (!mesh.find_halfedge(vertex(from), vertex(to)).is_valid())
                 throw std::invalid_argument("patch mesh: a line isn't an edge");
+        for (std::size_t k = 0; k < 2; ++k)
+            if (arrays.vertex_surface[line.left[k]] != arrays.vertex_surface[line.right[k]] ||
+                arrays.positions[line.left[k]] != arrays.positions[line.right[k]])
+                throw std::invalid_argument("patch mesh: the sides of a line aren't at one place");
+    }
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ PatchMesh::PatchMesh(const Scene& scene, PatchMeshArrays arrays)
     }
     for (const auto v : mesh.vertices())
         if (!mesh.is_manifold(v)) throw std::invalid_argument("patch mesh: patches meet in a vertex only");
-    check_lines(mesh, arrays_.lines);
+    check_lines(mesh, arrays_);
     line_ranges_ = line_ranges(arrays_, scene.surfaces.size());
 }
 

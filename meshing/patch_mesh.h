@@ -57,7 +57,8 @@ class PatchMesh {
 public:
     PatchMesh();
     /// Throws std::invalid_argument when an index is past the end, surfaces are out of order, a triangle joins
-    /// vertices of two surfaces, has no area, the triangles of a surface aren't a manifold, or a line isn't their edge.
+    /// vertices of two surfaces, has no area, the triangles of a surface aren't a manifold, or a line isn't their edge
+    /// or has its sides at different places.
     PatchMesh(const Scene& scene, PatchMeshArrays arrays);
     PatchMesh(PatchMesh&&) noexcept;
     PatchMesh& operator=(PatchMesh&&) noexcept;

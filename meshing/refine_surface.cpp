@@ -304,29 +304,61 @@ private:
     /// Unless what it leaves would be too thin.
     void bisect(HalfedgeHandle h)
     {
-        const VertexHandle a = mesh_.from_vertex_handle(h), b = mesh_.to_vertex_handle(h);
-        const Vec2 middle = plane_.to_plane(middle_of(a, b));
+        const Vec3 middle = middle_of(mesh_.from_vertex_handle(h), mesh_.to_vertex_handle(h));
+        if (may_divide(h, plane_.to_plane(middle))) split_edge(h);
+    }
+
+    /// Whether triangles are left with area when an edge is divided at q.
+    bool may_divide(HalfedgeHandle h, const Vec2& q) const
+    {
         for (const HalfedgeHandle side : {h, mesh_.opposite_halfedge_handle(h)}) {
             if (mesh_.is_boundary(side)) continue;
             const Vec2& apex = at(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(side)));
             const Vec2 &from = at(mesh_.from_vertex_handle(side)), &to = at(mesh_.to_vertex_handle(side));
-            if (!MeshingPlane::is_thick(from, middle, apex) || !MeshingPlane::is_thick(middle, to, apex)) return;
+            if (!MeshingPlane::is_thick(from, q, apex) || !MeshingPlane::is_thick(q, to, apex)) return false;
         }
-        split_edge(h);
+        return true;
     }
 
-    /// A vertex in the middle of two that had an edge once.
+    /// A vertex in the middle of two that had an edge once; often it lies on the edge that flips put there instead.
     void insert_middle(VertexHandle a, VertexHandle b)
     {
         const Vec3 place = middle_of(a, b);
         const Vec2 middle = plane_.to_plane(place);
-        const auto [face, blocking] = walk(*mesh_.cvf_begin(a), middle);
-        if (blocking.is_valid() || !face.is_valid()) return;
+        const FaceHandle face = face_towards(a, middle);
+        if (!face.is_valid()) return;
+        HalfedgeHandle touched;
         for (const auto h : mesh_.fh_range(face))
-            if (!MeshingPlane::is_thick(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), middle)) return;
+            if (!MeshingPlane::is_thick(at(mesh_.from_vertex_handle(h)), at(mesh_.to_vertex_handle(h)), middle))
+                touched = h;
+        if (touched.is_valid() && (is_fixed(touched) || !may_divide(touched, middle))) return;
         const VertexHandle vertex = add_vertex(place);
-        split(face, vertex);
+        if (touched.is_valid())
+            split(mesh_.edge_handle(touched), vertex);
+        else
+            split(face, vertex);
         settle(vertex);
+    }
+
+    /// The face that contains q, straight on from a vertex; none when something fixed lies in between.
+    FaceHandle face_towards(VertexHandle start, const Vec2& q) const
+    {
+        HalfedgeHandle ahead;  // from the right of the way to its left
+        for (const FaceHandle face : mesh_.vf_range(start)) {
+            const HalfedgeHandle h = facing(face, start);
+            if (cross2(at(start), at(mesh_.from_vertex_handle(h)), q) >= 0 &&
+                cross2(at(start), q, at(mesh_.to_vertex_handle(h))) >= 0)
+                ahead = h;
+        }
+        while (ahead.is_valid() &&
+               cross2(at(mesh_.from_vertex_handle(ahead)), at(mesh_.to_vertex_handle(ahead)), q) < 0) {
+            if (is_fixed(ahead)) return FaceHandle();
+            ahead = mesh_.opposite_halfedge_handle(ahead);
+            const VertexHandle apex = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(ahead));
+            ahead = cross2(at(start), q, at(apex)) > 0 ? mesh_.next_halfedge_handle(ahead)
+                                                       : mesh_.prev_halfedge_handle(ahead);
+        }
+        return ahead.is_valid() ? mesh_.face_handle(ahead) : FaceHandle();
     }
 
     void settle(VertexHandle vertex)

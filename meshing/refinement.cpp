@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -126,30 +127,49 @@ std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::
     return best;
 }
 
-/// The surfaces' triangulations with the first lines of the plan; those that got some aren't what they were.
-std::vector<SurfaceTriangulation> with_lines(const Scene& scene, const PatchMesh& mesh, const LinesOfSurface& lines)
+std::array<std::size_t, line_kinds.size()> edges_by_kind(const SurfaceTriangulation& triangulation)
 {
-    std::vector<SurfaceTriangulation> pieces(scene.surfaces.size());
+    std::array<std::size_t, line_kinds.size()> counts{};
+    for (const auto& line : triangulation.lines) ++counts[static_cast<std::size_t>(line.kind)];
+    return counts;
+}
+
+/// The surfaces' triangulations, and which of them lines have changed.
+struct LinedPieces {
+    std::vector<SurfaceTriangulation> pieces;
+    std::vector<std::uint8_t> changed;
+};
+
+LinedPieces with_lines(const Scene& scene, const PatchMesh& mesh, const LinesOfSurface& lines)
+{
+    const std::size_t n = scene.surfaces.size();
+    LinedPieces result{std::vector<SurfaceTriangulation>(n), std::vector<std::uint8_t>(n, 0)};
     for_each_surface(scene, [&](SurfaceId s) {
-        const bool anew = !lines[s.value].empty() && mesh.lines_of(s).empty();
-        pieces[s.value] = anew ? triangulate_polygon(scene, s) : triangulation_of(mesh, s);
-        if (!lines[s.value].empty())
-            pieces[s.value] = insert_lines({scene.surface(s).frame, scene.diameter}, pieces[s.value], lines[s.value]);
+        SurfaceTriangulation& piece = result.pieces[s.value];
+        piece = triangulation_of(mesh, s);
+        if (lines[s.value].empty()) return;
+        const SurfaceTriangulation before = piece.lines.empty() ? triangulate_polygon(scene, s) : piece;
+        SurfaceTriangulation lined = insert_lines({scene.surface(s).frame, scene.diameter}, before, lines[s.value]);
+        // Lines outside of the surface, on its border, or there already, are no reason to lose what it has.
+        if (edges_by_kind(lined) == edges_by_kind(before)) return;
+        piece = std::move(lined);
+        result.changed[s.value] = 1;
     });
-    return pieces;
+    return result;
 }
 
 using SurfaceEdges = std::vector<std::vector<std::array<std::uint32_t, 2>>>;
 
 /// The edges to halve, by surface, as many of the first as there is room for: each makes two triangles more at most.
-SurfaceEdges edges_to_bisect(const PatchMesh& mesh, const RefinementPlan& plan,
-                             const std::vector<SurfaceTriangulation>& pieces, std::size_t room)
+SurfaceEdges edges_to_bisect(const PatchMesh& mesh, const RefinementPlan& plan, const LinedPieces& lined,
+                             std::size_t room)
 {
+    const auto& pieces = lined.pieces;
     SurfaceEdges edges(pieces.size());
     std::vector<std::set<std::pair<std::uint32_t, std::uint32_t>>> chosen(pieces.size());
     for (const auto& [patch, k] : plan.bisections) {
         const SurfaceId s = mesh.surface(patch);
-        if (pieces[s.value].triangles.size() != mesh.patches_of(s).size()) continue;  // lines changed it
+        if (lined.changed[s.value]) continue;
         const auto& corners = pieces[s.value].triangles[patch.value - mesh.patches_of(s).first];
         const std::uint32_t a = corners[k], b = corners[(k + 1U) % 3];
         if (room < 2) break;
@@ -177,13 +197,14 @@ Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPla
                                                       : std::numeric_limits<std::size_t>::max();
     std::span<const SurfaceLine> lines = plan.lines;
     LinesOfSurface lines_of = by_surface(scene, lines);
-    std::vector<SurfaceTriangulation> pieces = with_lines(scene, mesh, lines_of);
-    while (count(pieces) > most && !lines.empty()) {
+    LinedPieces lined = with_lines(scene, mesh, lines_of);
+    while (count(lined.pieces) > most && !lines.empty()) {
         lines = lines.first(lines.size() * 3 / 4);
         lines_of = by_surface(scene, lines);
-        pieces = with_lines(scene, mesh, lines_of);
+        lined = with_lines(scene, mesh, lines_of);
     }
-    const SurfaceEdges edges = edges_to_bisect(mesh, plan, pieces, most - std::min(most, count(pieces)));
+    std::vector<SurfaceTriangulation>& pieces = lined.pieces;
+    const SurfaceEdges edges = edges_to_bisect(mesh, plan, lined, most - std::min(most, count(pieces)));
     for_each_surface(scene, [&](SurfaceId s) {
         if (!edges[s.value].empty())
             pieces[s.value] = bisect_edges({scene.surface(s).frame, scene.diameter}, pieces[s.value], edges[s.value]);

@@ -207,15 +207,30 @@ SurfaceTriangulation with_lines(const MeshingPlane& plane, const SurfaceTriangul
     return result;
 }
 
-/// No triangle without area.
-bool is_sound(const MeshingPlane& plane, const SurfaceTriangulation& triangulation)
+double area_of(const MeshingPlane& plane, const SurfaceTriangulation& triangulation)
 {
-    return std::ranges::all_of(triangulation.triangles, [&](const auto& t) {
+    double twice = 0;
+    for (const auto& t : triangulation.triangles) {
         const auto at = [&](std::size_t k) {
             return plane.frame.to_plane(triangulation.positions[t[k]]) / plane.diameter;
         };
-        return MeshingPlane::is_thick(at(0), at(1), at(2));
-    });
+        twice += cross2(at(0), at(1), at(2));
+    }
+    return 0.5 * twice;
+}
+
+/// No triangle without area, and together they have that of `before`: in a wedge of the border narrower than what is
+/// merged its sides get into each other's way.
+bool is_sound(const MeshingPlane& plane, const SurfaceTriangulation& triangulation, const SurfaceTriangulation& before)
+{
+    const double area = area_of(plane, before);
+    return std::abs(area_of(plane, triangulation) - area) <= 1e-12 * area + 1e-15 &&
+           std::ranges::all_of(triangulation.triangles, [&](const auto& t) {
+               const auto at = [&](std::size_t k) {
+                   return plane.frame.to_plane(triangulation.positions[t[k]]) / plane.diameter;
+               };
+               return MeshingPlane::is_thick(at(0), at(1), at(2));
+           });
 }
 
 }  // namespace
@@ -255,7 +270,7 @@ SurfaceTriangulation insert_lines(const MeshingPlane& plane, const SurfaceTriang
     // Lines that bend toward one another round after round can leave a triangle no thicker than rounding.
     for (int attempt = 0; attempt < 3; ++attempt, merge *= 8) {
         SurfaceTriangulation result = with_lines(plane, triangulation, scaled, merge);
-        if (is_sound(plane, result)) return result;
+        if (is_sound(plane, result, triangulation)) return result;
     }
     return triangulation;
 }

@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
     NotBuiltYet, RefusedArguments,
     ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"}, std::vector<std::string>{"verify", "a"},
                       std::vector<std::string>{"report", "a", "-o", "b"}, std::vector<std::string>{"study", "run", "a"},
-                      solving({"--refine", "both"}), solving({"--solver", "hierarchical"}),
+                      solving({"--refine", "quadratic"}), solving({"--solver", "hierarchical"}),
                       solving({"--form-factors", "monte-carlo"}), solving({"--form-factors", "closed-form"}),
                       solving({"--form-factors", "exact", "--solver", "progressive"}), solving({"--resolution", "127"}),
                       solving({"--mesh", "a"}), std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
@@ -66,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
                       solving({"--emitter", "lamp=1,2"}), solving({"--emitter", "lamp=nan"}),
                       solving({"--emitter", "lamp=1", "--emitter", "lamp=2"}), solving({"--unit", "parsec"}),
                       solving({"--max-reflectance", "1"}), solving({"--seed", "-1"}),
-                      solving({"--crease-angle", "181"}), solving({"--marking", "all"}),
+                      solving({"--crease-angle", "181"}), solving({"--marking", "all"}), solving({"--direct", "none"}),
+                      solving({"--direct", "exactly"}), solving({"--refine", "lines"}), solving({"--refine", ""}),
                       std::vector<std::string>{"render", "run", "-o", "a.jpg"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--from", "1,2,3"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--from", "1,2,3", "--to", "1,2,3"},
@@ -129,7 +130,23 @@ TEST(Arguments, MaxEdgeIsInTheUnitAndLeavesTheBudgetAlone)
     const auto adaptive = std::get<SolveCommand>(parse(solving({"--max-edge", "2", "--max-elements", "500"})));
     EXPECT_EQ(adaptive.options.meshing.max_elements, 0U);
     EXPECT_EQ(adaptive.options.max_elements, 500U);
-    EXPECT_EQ(adaptive.options.refine, Refine::intensity);
+    EXPECT_EQ(adaptive.options.refine, Refine::both);
+    const auto lined = std::get<SolveCommand>(parse(solving({"--refine", "discontinuity", "--max-elements", "500"})));
+    EXPECT_EQ(lined.options.meshing.max_elements, 500U) << "uniform but for the lines";
+}
+
+TEST(Arguments, RefinementAndDirectLightCanBeChosen)
+{
+    const auto options = [](std::vector<std::string> words) {
+        return std::get<SolveCommand>(parse(solving(std::move(words)))).options;
+    };
+    EXPECT_EQ(options({}).refine, Refine::both);
+    EXPECT_EQ(options({}).direct, Direct::exact);
+    EXPECT_EQ(options({"--refine", "both"}).refine, Refine::both);
+    EXPECT_EQ(options({"--refine", "intensity"}).refine, Refine::intensity);
+    EXPECT_EQ(options({"--refine", "discontinuity"}).refine, Refine::discontinuity);
+    EXPECT_EQ(options({"--direct", "exact"}).direct, Direct::exact);
+    EXPECT_EQ(options({"--direct", "sampled"}).direct, Direct::sampled);
 }
 
 TEST(Arguments, FormFactorsBetweenObjectsAndOfAllPatchesHaveTheirOwnDefaults)

@@ -18,7 +18,7 @@ TEST_F(UsageTest, EndsWithTwoAndAMessageBeforeAnyFileIsLookedAt)
                                                   {"verify", "run"},
                                                   {"solve", "room.obj"},
                                                   {"solve", "room.obj", "-o", "run", "--threads", "1e9"},
-                                                  {"solve", "room.obj", "-o", "run", "--refine", "both"}}) {
+                                                  {"solve", "room.obj", "-o", "run", "--refine", "lines"}}) {
         const Outcome outcome = run(words, {.folder = folder_});
         EXPECT_EQ(outcome.code, 2);
         EXPECT_THAT(outcome.err, StartsWith("error[usage]: "));
@@ -31,8 +31,8 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 {
     const Outcome help = run({"solve", "--help"});
     EXPECT_EQ(help.code, 0);
-    for (const char* shown : {"--refine", "=intensity", "--solver", "=gauss-seidel", "=hemisphere", "=8000",
-                              "=residual", "=doerfler", "=0.95", "=0.0001", "--unit", "=m"}) {
+    for (const char* shown : {"--refine", "=both", "--direct", "=exact", "--solver", "=gauss-seidel", "=hemisphere",
+                              "=8000", "=residual", "=doerfler", "=0.95", "=0.0001", "--unit", "=m"}) {
         EXPECT_THAT(help.out, HasSubstr(shown));
     }
 }
@@ -65,7 +65,7 @@ TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
-        for (const char* absent : {"discontinuity", "hierarchical", "vtu", "verify", "false-color", "--mesh "}) {
+        for (const char* absent : {"quadratic", "hierarchical", "vtu", "verify", "false-color", "--mesh "}) {
             EXPECT_THAT(help.out, Not(HasSubstr(absent))) << command;
         }
     }

@@ -83,7 +83,7 @@ void expect_located(const PatchMesh& mesh, const Hits& hits)
 PatchMesh graded(const Scene& scene, const Vec3& corner)
 {
     PatchMesh mesh = triangulate(scene, {.max_edge = 0.3 * scene.diameter});
-    for (int round = 0; round < 12; ++round) mesh = refine(scene, mesh, plan_towards(mesh, corner), {}).mesh;
+    for (int round = 0; round < 40; ++round) mesh = refine(scene, mesh, plan_towards(mesh, corner), {}).mesh;
     return mesh;
 }
 

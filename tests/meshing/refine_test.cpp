@@ -1,11 +1,12 @@
 #include "meshing/refinement.h"
 
-#include "tests/meshing/flat_scenes.h"
-#include "tests/meshing/mesh_checks.h"
+#include "tests/meshing/line_checks.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <compare>
+#include <optional>
 #include <tuple>
 
 using namespace patchlight;
@@ -13,60 +14,82 @@ using namespace patchlight::testing;
 
 namespace {
 
-/// Every new patch whose centroid lies in a split patch is as small as that split asks.
-void expect_obeyed(const Scene& scene, const PatchMesh& old_mesh, const RefinementPlan& plan, const PatchMesh& new_mesh)
+/// A place on a surface, to the bit.
+using Place = std::tuple<SurfaceId, double, double, double>;
+using Edge = std::pair<Place, Place>;
+
+Place place(SurfaceId surface, const Vec3& p)
 {
-    const PatchLocator locator(old_mesh);
-    std::vector<double> target(old_mesh.patch_count(), 1e300);
-    for (const auto& split : plan.splits)
-        target[split.patch.value] = std::min(target[split.patch.value], split.target_edge);
-    for (const PatchId p : new_mesh.patches()) {
-        Vec2 middle(0.0);
-        for (const VertexId v : new_mesh.corners(p)) middle += new_mesh.plane_position(v) / 3.0;
-        const PatchId under =
-            locator.locate(new_mesh.surface(p), static_cast<float>(middle.x), static_cast<float>(middle.y));
-        // Meshing tells places apart to 2⁻³⁰ of the diameter.
-        EXPECT_LE(new_mesh.longest_edge(p), target[under.value] * (1 + 1e-6) + 3e-9 * scene.diameter);
+    return {surface, p.x, p.y, p.z};
+}
+
+std::set<Place> places(const PatchMesh& mesh)
+{
+    std::set<Place> result;
+    for (const VertexId v : mesh.vertices()) result.insert(place(mesh.surface(v), mesh.position(v)));
+    return result;
+}
+
+Edge edge_of(const PatchMesh& mesh, PatchId p, std::size_t k)
+{
+    const auto c = mesh.corners(p);
+    return std::minmax(place(mesh.surface(p), mesh.position(c[k])),
+                       place(mesh.surface(p), mesh.position(c[(k + 1) % 3])));
+}
+
+std::set<Edge> edges(const PatchMesh& mesh)
+{
+    std::set<Edge> result;
+    for (const PatchId p : mesh.patches())
+        for (std::size_t k = 0; k < 3; ++k) result.insert(edge_of(mesh, p, k));
+    return result;
+}
+
+Place middle(const PatchMesh& mesh, const RefinementPlan::Bisection& bisection)
+{
+    const auto c = mesh.corners(bisection.patch);
+    const std::size_t k = bisection.edge;
+    return place(mesh.surface(bisection.patch), 0.5 * (mesh.position(c[k]) + mesh.position(c[(k + 1) % 3])));
+}
+
+/// Old vertices stay, to the bit; each edge of the plan is gone, and its middle is a vertex; there are no others.
+void expect_bisected(const PatchMesh& old_mesh, const RefinementPlan& plan, const PatchMesh& new_mesh)
+{
+    std::set<Place> expected = places(old_mesh);
+    const std::set<Edge> left = edges(new_mesh);
+    for (const auto& bisection : plan.bisections) {
+        expected.insert(middle(old_mesh, bisection));
+        EXPECT_FALSE(left.contains(edge_of(old_mesh, bisection.patch, bisection.edge)));
     }
+    EXPECT_EQ(places(new_mesh), expected);
 }
 
-std::vector<Vec3> sorted_positions(const PatchMesh& mesh)
+/// A patch more for an edge of the border, two for any other.
+std::size_t patches_after(const PatchMesh& mesh, const RefinementPlan& plan)
 {
-    std::vector<Vec3> positions = mesh.arrays().positions;
-    std::sort(positions.begin(), positions.end(),
-              [](const Vec3& a, const Vec3& b) { return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z); });
-    return positions;
+    std::set<Edge> halved;
+    std::size_t patches = mesh.patch_count();
+    for (const auto& [p, k] : plan.bisections)
+        if (halved.insert(edge_of(mesh, p, k)).second) patches += mesh.neighbours(p)[k].valid() ? 2 : 1;
+    return patches;
 }
 
-/// To the bit.
-void expect_old_vertices_stay(const PatchMesh& old_mesh, const PatchMesh& new_mesh)
+/// The first of the plan that halve so many edges.
+RefinementPlan first_edges(const PatchMesh& mesh, const RefinementPlan& plan, std::size_t count)
 {
-    const auto before = sorted_positions(old_mesh), after = sorted_positions(new_mesh);
-    EXPECT_TRUE(
-        std::includes(after.begin(), after.end(), before.begin(), before.end(), [](const Vec3& a, const Vec3& b) {
-            return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z);
-        }));
-}
-
-std::vector<std::array<std::uint32_t, 3>> lowest_corner_first(const PatchMesh& mesh)
-{
-    auto triangles = mesh.arrays().triangles;
-    for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    return triangles;
-}
-
-/// The largest splits of a random plan first.
-RefinementPlan worst_first(const PatchMesh& mesh, double share, std::uint32_t seed)
-{
-    RefinementPlan plan = random_plan(mesh, share, seed);
-    std::stable_sort(plan.splits.begin(), plan.splits.end(),
-                     [&](const auto& a, const auto& b) { return mesh.area(a.patch) > mesh.area(b.patch); });
-    return plan;
+    RefinementPlan first;
+    std::set<Edge> halved;
+    for (const auto& bisection : plan.bisections) {
+        halved.insert(edge_of(mesh, bisection.patch, bisection.edge));
+        if (halved.size() > count) break;
+        first.bisections.push_back(bisection);
+    }
+    return first;
 }
 
 }  // namespace
 
-TEST(Refine, rounds_of_random_plans_keep_all_promises)
+TEST(Refine, rounds_of_random_bisections_keep_all_promises)
 {
     std::uint32_t seed = 1;
     for (const auto& [name, loops] : blunt_polygons()) {
@@ -75,39 +98,68 @@ TEST(Refine, rounds_of_random_plans_keep_all_promises)
             PatchMesh mesh = triangulate(scene, {.max_edge = scene.diameter / 8});
             for (int round = 0; round < 6; ++round) {
                 SCOPED_TRACE(name + (frame.origin.x > 0 ? ", tilted" : "") + ", round " + std::to_string(round));
-                const RefinementPlan plan = random_plan(mesh, 0.03, seed++);
+                // All patches at once, too: then flips take edges away before it's their turn.
+                const RefinementPlan plan = random_plan(mesh, round == 2 ? 1 : 0.1, seed++);
                 PatchMesh refined = refine(scene, mesh, plan, {}).mesh;
                 expect_sound_mesh(scene, refined);
-                expect_obeyed(scene, mesh, plan, refined);
-                expect_old_vertices_stay(mesh, refined);
-                EXPECT_GE(smallest_angle(refined), 18);
+                expect_delaunay(scene, refined);
+                expect_bisected(mesh, plan, refined);
+                EXPECT_EQ(refined.patch_count(), patches_after(mesh, plan));
                 mesh = std::move(refined);
             }
         }
     }
 }
 
-TEST(Refine, towards_a_corner_the_cost_is_that_of_the_corner)
+TEST(Refine, an_edge_named_by_both_its_patches_is_halved_once)
+{
+    const Scene scene = flat_scene({rectangle_loop(0, 0, 1, 1)});
+    const PatchMesh mesh = triangulate(scene, {.max_edge = 2});
+    ASSERT_EQ(mesh.patch_count(), 2U);
+    RefinementPlan plan;
+    for (const PatchId p : mesh.patches())
+        for (std::uint8_t k = 0; k < 3; ++k)
+            if (mesh.neighbours(p)[k].valid()) plan.bisections.push_back({p, k});
+    ASSERT_EQ(plan.bisections.size(), 2U);
+    const PatchMesh refined = refine(scene, mesh, plan, {}).mesh;
+    EXPECT_EQ(refined.patch_count(), 4U);
+    expect_bisected(mesh, plan, refined);
+}
+
+// Halving what is longest at a corner again and again: two patches a time, whatever the grading, and it goes on until
+// patches are as small as meshing's rounding.
+TEST(Refine, towards_a_corner_each_bisection_costs_two_patches)
 {
     const Scene scene = grey_cube();
     PatchMesh mesh = triangulate(scene, {.max_edge = 1});
     const std::size_t coarse = mesh.patch_count();
-    for (int round = 0; round < 16; ++round) {
-        const RefinementPlan plan = plan_towards(mesh, {1, 1, 1});
-        PatchMesh refined = refine(scene, mesh, plan, {}).mesh;
-        expect_obeyed(scene, mesh, plan, refined);
-        EXPECT_GE(smallest_angle(refined), 18);
-        mesh = std::move(refined);
+    for (std::size_t round = 1; round <= 100; ++round) {
+        mesh = refine(scene, mesh, plan_towards(mesh, {1, 1, 1}), {}).mesh;
+        EXPECT_LE(mesh.patch_count(), coarse + 2 * round);
     }
     expect_sound_mesh(scene, mesh);
-    // A graded mesh needs a fixed number of patches each time its finest edge is halved.
-    EXPECT_LT(mesh.patch_count(), coarse + 16 * 60);
+    expect_delaunay(scene, mesh);
+    double smallest = 1;
+    for (const PatchId p : mesh.patches()) smallest = std::min(smallest, mesh.longest_edge(p));
+    EXPECT_LT(smallest, 1e-6);
+}
+
+TEST(Refine, what_is_as_small_as_rounding_stays_whole)
+{
+    const Scene scene = flat_scene({rectangle_loop(0, 0, 1, 1)}, 0.5, tilted_frame());
+    PatchMesh mesh = triangulate(scene, {.max_edge = 1});
+    for (int round = 0; round < 200; ++round)
+        mesh = refine(scene, mesh, plan_towards(mesh, scene.vertices[2]), {}).mesh;
+    expect_sound_mesh(scene, mesh);
+    const PatchMesh again = refine(scene, mesh, plan_towards(mesh, scene.vertices[2]), {}).mesh;
+    EXPECT_EQ(again.arrays().positions, mesh.arrays().positions);
+    EXPECT_EQ(again.patch_count(), mesh.patch_count());
 }
 
 TEST(Refine, an_empty_plan_changes_nothing)
 {
     for (const Scene& scene : {grey_cube(), cornell_box(), flat_scene(sharp_triangle(5), 0.5, tilted_frame())}) {
-        PatchMesh mesh = triangulate(scene, {.max_edge = scene.diameter / 15});
+        PatchMesh mesh = triangulate(scene, {.max_edge = scene.diameter / 15}, crosses(scene));
         mesh = refine(scene, mesh, random_plan(mesh, 0.1, 5), {}).mesh;
         PatchMesh again = refine(scene, mesh, {}, {}).mesh;
         expect_same_mesh(mesh, again);
@@ -117,35 +169,26 @@ TEST(Refine, an_empty_plan_changes_nothing)
     }
 }
 
-TEST(Refine, a_plan_already_obeyed_changes_nothing)
-{
-    const Scene scene = grey_cube();
-    const PatchMesh mesh = triangulate(scene, {.max_edge = 0.3});
-    RefinementPlan plan;
-    for (const PatchId p : mesh.patches()) plan.splits.push_back({p, mesh.longest_edge(p) * (1 + 1e-6)});
-    const PatchMesh again = refine(scene, mesh, plan, {}).mesh;
-    EXPECT_EQ(again.arrays().positions, mesh.arrays().positions);
-    EXPECT_EQ(lowest_corner_first(again), lowest_corner_first(mesh));
-}
-
-TEST(Refine, surfaces_without_a_split_are_left_alone)
+TEST(Refine, surfaces_without_a_bisection_are_left_alone)
 {
     const Scene scene = grey_cube();
     const PatchMesh mesh = triangulate(scene, {.max_edge = 0.4});
     const SurfaceId split(std::size_t{2});
     RefinementPlan plan;
-    for (const PatchId p : mesh.patches_of(split)) plan.splits.push_back({p, 0.1});
+    for (const PatchId p : mesh.patches_of(split)) plan.bisections.push_back({p, 0});
     const PatchMesh refined = refine(scene, mesh, plan, {}).mesh;
     for (std::uint32_t s = 0; s < 6; ++s) {
-        const std::size_t before = mesh.patches_of(SurfaceId(s)).size(),
-                          after = refined.patches_of(SurfaceId(s)).size();
+        const auto before = mesh.patches_of(SurfaceId(s)), after = refined.patches_of(SurfaceId(s));
         if (s == split.value) {
-            EXPECT_GT(after, 4 * before);
-        } else {
-            EXPECT_EQ(after, before);
+            EXPECT_GT(after.size(), before.size());
+            continue;
         }
+        ASSERT_EQ(after.size(), before.size());
+        for (std::uint32_t i = 0; i < before.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                EXPECT_EQ(refined.position(refined.corners(PatchId(after.first + i))[k]),
+                          mesh.position(mesh.corners(PatchId(before.first + i))[k]));
     }
-    EXPECT_LE(longest_edge(refined), 0.4 * (1 + 1e-9));
 }
 
 TEST(Refine, sharp_corners_of_the_input_end)
@@ -154,44 +197,33 @@ TEST(Refine, sharp_corners_of_the_input_end)
         SCOPED_TRACE(degrees);
         const Scene scene = flat_scene(sharp_triangle(degrees), 0.5, tilted_frame());
         PatchMesh mesh = triangulate(scene, {.max_edge = 0.2});
-        for (int round = 0; round < 6; ++round) {
+        for (int round = 0; round < 12; ++round) {
             const RefinementPlan plan =
                 round % 2 == 0 ? random_plan(mesh, 0.2, 3) : plan_towards(mesh, scene.vertices[0]);
             PatchMesh refined = refine(scene, mesh, plan, {}).mesh;
             expect_sound_mesh(scene, refined);
-            expect_obeyed(scene, mesh, plan, refined);
-            // A quarter of the edge is sixteen times the patches; what is sharp already may need four times these.
-            EXPECT_LE(refined.patch_count(), mesh.patch_count() + 64 * (plan.splits.size() + 1));
+            expect_bisected(mesh, plan, refined);
+            EXPECT_EQ(refined.patch_count(), patches_after(mesh, plan));
             mesh = std::move(refined);
         }
     }
 }
 
-TEST(Refine, the_budget_is_kept_and_spent_on_the_first_splits)
+TEST(Refine, the_budget_is_kept_and_spent_on_the_first_bisections)
 {
     const Scene scene = grey_cube();
     const PatchMesh mesh = triangulate(scene, {.max_edge = 0.4});
-    const RefinementPlan plan = worst_first(mesh, 0.05, 9);
-    const std::size_t all = refine(scene, mesh, plan, {}).mesh.patch_count();
-    ASSERT_GT(plan.splits.size(), 15U);
-    std::size_t fewest = all;
-    for (const double share : {1.0, 0.9, 0.5, 0.2}) {
-        const std::size_t budget =
-            mesh.patch_count() + static_cast<std::size_t>(share * static_cast<double>(all - mesh.patch_count()));
-        const PatchMesh bounded = refine(scene, mesh, plan, {.max_elements = budget}).mesh;
-        EXPECT_LE(bounded.patch_count(), budget);
-        EXPECT_GT(bounded.patch_count(), mesh.patch_count() + (budget - mesh.patch_count()) / 2) << "share " << share;
-        // It is what the first splits alone give.
-        bool is_prefix = false;
-        RefinementPlan first;
-        for (std::size_t k = 0; k <= plan.splits.size() && !is_prefix; ++k) {
-            first.splits.assign(plan.splits.begin(), plan.splits.begin() + static_cast<std::ptrdiff_t>(k));
-            is_prefix = refine(scene, mesh, first, {}).mesh.arrays().positions == bounded.arrays().positions;
-        }
-        EXPECT_TRUE(is_prefix) << "share " << share;
-        EXPECT_LE(bounded.patch_count(), fewest);
-        fewest = bounded.patch_count();
+    const RefinementPlan plan = random_plan(mesh, 0.3, 9);
+    const std::size_t n = mesh.patch_count();
+    ASSERT_GT(plan.bisections.size(), 50U);
+    for (const std::size_t room : {2U, 3U, 20U, 37U, 80U}) {
+        SCOPED_TRACE(room);
+        const PatchMesh bounded = refine(scene, mesh, plan, {.max_elements = n + room}).mesh;
+        EXPECT_LE(bounded.patch_count(), n + room);
+        expect_same_mesh(bounded, refine(scene, mesh, first_edges(mesh, plan, room / 2), {}).mesh);
     }
+    const PatchMesh all = refine(scene, mesh, plan, {}).mesh;
+    expect_same_mesh(all, refine(scene, mesh, plan, {.max_elements = 10 * n}).mesh);
 }
 
 TEST(Refine, a_budget_already_spent_gives_the_same_mesh)
@@ -205,15 +237,86 @@ TEST(Refine, a_budget_already_spent_gives_the_same_mesh)
     }
 }
 
+TEST(Refine, lines_are_dropped_from_the_last_until_the_budget_holds)
+{
+    const Scene scene = flat_scene({rectangle_loop(0, 0, 1, 1)});
+    const PatchMesh mesh = triangulate(scene, {.max_edge = 2});
+    RefinementPlan plan;
+    for (int i = 0; i < 40; ++i) {
+        const double x = 0.1 + 0.02 * i;
+        plan.lines.push_back({SurfaceId(std::size_t{0}), LineKind::ev, {x, 0.2}, {x, 0.8}});
+    }
+    const PatchMesh refined = refine(scene, mesh, plan, {.max_elements = 60}).mesh;
+    expect_sound_mesh(scene, refined);
+    EXPECT_LE(refined.patch_count(), 60U);
+    ASSERT_GT(refined.lines().size(), 5U);
+    for (const MeshLine& line : refined.lines())
+        EXPECT_LT(refined.position(VertexId(line.left[0])).x, 0.1 + 0.02 * static_cast<double>(refined.lines().size()));
+}
+
+// Whatever asks for lines that can't be had, edges are halved all the same, and nothing is lost.
+TEST(Refine, lines_outside_the_surface_change_nothing)
+{
+    const Scene scene = flat_scene({rectangle_loop(0, 0, 1, 1)});
+    PatchMesh mesh = triangulate(scene, {.max_edge = 0.3});
+    mesh = refine(scene, mesh, random_plan(mesh, 0.3, 1), {}).mesh;
+    RefinementPlan plan;
+    plan.lines = {{SurfaceId(std::size_t{0}), LineKind::contact, {0.2, 0}, {0.8, 0}},
+                  {SurfaceId(std::size_t{0}), LineKind::ev, {0.2, 1.5}, {0.8, 1.5}}};
+    expect_same_mesh(mesh, refine(scene, mesh, plan, {}).mesh);
+    const RefinementPlan halved = random_plan(mesh, 0.3, 1);
+    plan.bisections = halved.bisections;
+    expect_same_mesh(refine(scene, mesh, halved, {}).mesh, refine(scene, mesh, plan, {}).mesh);
+}
+
+// Edges that already are where a line is asked for: nothing was cut, but each patch has its own number still.
+TEST(Refine, a_line_along_edges_halves_no_other_edge)
+{
+    const Scene scene = flat_scene({rectangle_loop(0, 0, 1, 1)});
+    PatchMesh mesh = triangulate(scene, {.max_edge = 2});
+    RefinementPlan first;
+    first.lines = {{SurfaceId(std::size_t{0}), LineKind::ev, {0.2, 0.5}, {0.8, 0.5}}};
+    mesh = refine(scene, mesh, first, {}).mesh;
+    ASSERT_EQ(mesh.lines().size(), 1U);
+    RefinementPlan plan = random_plan(mesh, 0.5, 3);
+    plan.lines = first.lines;
+    const PatchMesh refined = refine(scene, mesh, plan, {}).mesh;
+    expect_sound_mesh(scene, refined);
+    for (const Place& p : places(refined)) {
+        bool known = places(mesh).contains(p);
+        for (const auto& bisection : plan.bisections) known = known || middle(mesh, bisection) == p;
+        EXPECT_TRUE(known);
+    }
+}
+
+TEST(Refine, remesh_starts_from_the_outline_and_the_lines)
+{
+    const Scene scene = cornell_box();
+    PatchMesh mesh = triangulate(scene, {.max_elements = 500});
+    mesh = refine(scene, mesh, random_plan(mesh, 0.5, 4), {}).mesh;
+    const Refinement fresh = remesh(scene, mesh, crosses(scene), {.max_elements = 1000});
+    expect_same_mesh(fresh.mesh, triangulate(scene, {.max_elements = 1000}, crosses(scene)));
+    EXPECT_LE(fresh.mesh.patch_count(), 1000U);
+    EXPECT_GE(fresh.mesh.patch_count(), 800U);
+    EXPECT_GE(fresh.mesh.lines().size(), 4 * crosses(scene).size() / 2);
+    expect_sound_mesh(scene, fresh.mesh);
+}
+
 TEST(Refine, threads_do_not_change_the_mesh)
 {
     const Scene scene = cornell_box();
     const PatchMesh mesh = triangulate(scene, {.max_elements = 1000});
+    RefinementPlan plan = random_plan(mesh, 0.5, 2);
+    plan.lines = crosses(scene);
+    std::erase_if(plan.lines, [](const SurfaceLine& line) { return line.surface.value % 2 == 0; });
     std::vector<Refinement> results;
     for (const std::size_t threads : {1U, 2U, 2U}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        results.push_back(refine(scene, mesh, random_plan(mesh, 0.3, 2), {.max_elements = 2500}));
+        const PatchMesh lined = refine(scene, mesh, plan, {.max_elements = 2500}).mesh;
+        results.push_back(refine(scene, lined, random_plan(lined, 0.8, 3), {.max_elements = 2500}));
     }
+    EXPECT_FALSE(results[0].mesh.lines().empty());
+    EXPECT_GT(results[0].mesh.patch_count(), 500U);
     for (const std::size_t k : {1U, 2U}) {
         expect_same_mesh(results[0].mesh, results[k].mesh);
         EXPECT_EQ(results[0].transfer.start, results[k].transfer.start);

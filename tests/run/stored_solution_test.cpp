@@ -3,6 +3,7 @@
 #include "apps/run/byte_views.h"
 #include "apps/run/exporting.h"
 #include "apps/run/stored_scene.h"
+#include "meshing/refinement.h"
 #include "meshing/scene_error.h"
 #include "tests/imaging/floor_and_lamp.h"
 
@@ -29,6 +30,7 @@ struct Stored {
     Radiosity B = Radiosity(mesh.patch_count());
     VertexRadiosity vertex_B = VertexRadiosity(mesh.vertex_count());
     PatchField<double> eta = PatchField<double>(mesh.patch_count());
+    PatchField<std::uint8_t> edge = PatchField<std::uint8_t>(mesh.patch_count());
 
     Stored()
     {
@@ -39,12 +41,13 @@ struct Stored {
         for (std::size_t i = 0; i < B.size(); ++i) {
             B[PatchId(i)] = {awkward(3 * i), awkward(3 * i + 1), 1e-300};
             eta[PatchId(i)] = awkward(i);
+            edge[PatchId(i)] = static_cast<std::uint8_t>(i % 3);
         }
         for (std::size_t i = 0; i < vertex_B.size(); ++i) {
             vertex_B[VertexId(i)] = {awkward(i), 0, 1e9 + awkward(i)};
         }
     }
-    std::string encoded() const { return encode_solution(scene, mesh, B, vertex_B, eta); }
+    std::string encoded() const { return encode_solution(scene, mesh, B, vertex_B, eta, edge); }
 };
 
 TEST(StoredSolution, ComesBackEqualToTheBit)
@@ -54,6 +57,7 @@ TEST(StoredSolution, ComesBackEqualToTheBit)
     EXPECT_EQ(back.B, stored.B);
     EXPECT_EQ(back.vertex_B, stored.vertex_B);
     EXPECT_EQ(back.eta, stored.eta);
+    EXPECT_EQ(back.edge, stored.edge);
     EXPECT_EQ(back.mesh.arrays().positions, stored.mesh.arrays().positions);
     EXPECT_EQ(back.mesh.arrays().triangles, stored.mesh.arrays().triangles);
     EXPECT_EQ(back.mesh.arrays().vertex_surface, stored.mesh.arrays().vertex_surface);
@@ -61,7 +65,45 @@ TEST(StoredSolution, ComesBackEqualToTheBit)
     EXPECT_EQ(back.scene.views.at(0).from, stored.scene.views.at(0).from);
     EXPECT_EQ(back.scene.surfaces.at(1).loops, stored.scene.surfaces.at(1).loops);
     EXPECT_EQ(scene_digest(back.scene), scene_digest(stored.scene));
-    EXPECT_EQ(encode_solution(back.scene, back.mesh, back.B, back.vertex_B, back.eta), stored.encoded());
+    EXPECT_EQ(encode_solution(back.scene, back.mesh, back.B, back.vertex_B, back.eta, back.edge), stored.encoded());
+}
+
+// A contact line, cut open, with what goes on beyond its ends; and a line of another kind.
+TEST(StoredSolution, LinesAndTheirSidesComeBack)
+{
+    Stored stored;
+    const SurfaceId floor(0);
+    const std::vector<SurfaceLine> lines{{floor, LineKind::contact, {0.3, 0.4}, {0.7, 0.5}},
+                                         {floor, LineKind::plane, {0.1, 0.9}, {0.6, 0.1}}};
+    stored.mesh = triangulate(stored.scene, {.max_edge = 0.3}, lines);
+    stored.B = Radiosity(stored.mesh.patch_count());
+    stored.vertex_B = VertexRadiosity(stored.mesh.vertex_count());
+    stored.eta = PatchField<double>(stored.mesh.patch_count());
+    stored.edge = PatchField<std::uint8_t>(stored.mesh.patch_count());
+    // Both sides have light of their own.
+    for (std::size_t i = 0; i < stored.vertex_B.size(); ++i) stored.vertex_B[VertexId(i)] = Rgb(awkward(i));
+    const StoredSolution back = decode_solution(stored.encoded(), "solution.glb");
+    EXPECT_EQ(back.vertex_B, stored.vertex_B);
+    EXPECT_EQ(back.mesh.arrays().triangles, stored.mesh.arrays().triangles);
+    ASSERT_EQ(back.mesh.lines().size(), stored.mesh.lines().size());
+    std::size_t beyond = 0, cut = 0;
+    for (std::size_t i = 0; i < back.mesh.lines().size(); ++i) {
+        const MeshLine &a = back.mesh.lines()[i], &b = stored.mesh.lines()[i];
+        EXPECT_EQ(a.kind, b.kind);
+        EXPECT_EQ(a.left, b.left);
+        EXPECT_EQ(a.right, b.right);
+        EXPECT_EQ(a.beyond, b.beyond);
+        beyond += a.beyond;
+        cut += a.left != a.right;
+    }
+    EXPECT_EQ(beyond, 2U);
+    EXPECT_GE(cut, 4U);
+    EXPECT_EQ(stored.encoded(), encode_solution(back.scene, back.mesh, back.B, back.vertex_B, back.eta, back.edge));
+    // And it goes on being refined as it would have.
+    RefinementPlan plan;
+    for (const PatchId p : stored.mesh.patches()) plan.bisections.push_back({p, 0});
+    EXPECT_EQ(refine(back.scene, back.mesh, plan, {}).mesh.arrays().positions,
+              refine(stored.scene, stored.mesh, plan, {}).mesh.arrays().positions);
 }
 
 TEST(StoredSolution, NamesThatAreNotUtf8DoNotStopIt)

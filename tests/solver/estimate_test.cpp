@@ -27,7 +27,11 @@ ErrorEstimate rising(const PatchMesh& mesh)
 {
     ErrorEstimate error;
     error.eta = PatchField<double>(mesh.patch_count());
-    for (const PatchId p : mesh.patches()) error.eta[p] = 1.0 + p.value;
+    error.edge = PatchField<std::uint8_t>(mesh.patch_count());
+    for (const PatchId p : mesh.patches()) {
+        error.eta[p] = 1.0 + p.value;
+        error.edge[p] = static_cast<std::uint8_t>(p.value % 3);
+    }
     return error;
 }
 
@@ -40,12 +44,13 @@ TEST(Mark, DoerflerTakesTheFewestPatchesThatHoldTheShare)
         const RefinementPlan plan = mark(flat.scene, flat.mesh, error, {.share = share, .least = 0});
         double all = 0, held = 0;
         for (const double eta : error.eta.values()) all += eta * eta;
-        for (const auto& split : plan.splits) held += error.eta[split.patch] * error.eta[split.patch];
+        for (const auto& split : plan.bisections) held += error.eta[split.patch] * error.eta[split.patch];
         EXPECT_GE(held, share * all * (1 - 1e-12));
-        const double last = error.eta[plan.splits.back().patch];
+        const double last = error.eta[plan.bisections.back().patch];
         EXPECT_LT(held - last * last, share * all);
-        for (std::size_t i = 1; i < plan.splits.size(); ++i)
-            EXPECT_GE(error.eta[plan.splits[i - 1].patch], error.eta[plan.splits[i].patch]) << "the worst first";
+        for (std::size_t i = 1; i < plan.bisections.size(); ++i)
+            EXPECT_GE(error.eta[plan.bisections[i - 1].patch], error.eta[plan.bisections[i].patch])
+                << "the worst first";
     }
 }
 
@@ -54,7 +59,7 @@ TEST(Mark, FixedFractionTakesThatManyPatches)
     const Flat flat;
     const RefinementPlan plan =
         mark(flat.scene, flat.mesh, rising(flat.mesh), {.marking = Marking::fixed_fraction, .share = 0.25});
-    EXPECT_NEAR(static_cast<double>(plan.splits.size()), 0.25 * static_cast<double>(flat.mesh.patch_count()), 1);
+    EXPECT_NEAR(static_cast<double>(plan.bisections.size()), 0.25 * static_cast<double>(flat.mesh.patch_count()), 1);
 }
 
 TEST(Mark, NothingWrongNothingToSplit)
@@ -62,16 +67,47 @@ TEST(Mark, NothingWrongNothingToSplit)
     const Flat flat;
     ErrorEstimate error;
     error.eta = PatchField<double>(flat.mesh.patch_count(), 0.0);
+    error.edge = PatchField<std::uint8_t>(flat.mesh.patch_count(), 0);
     EXPECT_TRUE(mark(flat.scene, flat.mesh, error, {}).empty());
 }
 
-TEST(Mark, TargetsAreShorterThanWhatIsThere)
+TEST(Mark, HalvesTheEdgesTheEstimateNames)
 {
     const Flat flat;
-    for (const auto& split : mark(flat.scene, flat.mesh, rising(flat.mesh), {}).splits) {
-        EXPECT_LT(split.target_edge, flat.mesh.longest_edge(split.patch));
-        EXPECT_GT(split.target_edge, 0);
-    }
+    const ErrorEstimate error = rising(flat.mesh);
+    const RefinementPlan plan = mark(flat.scene, flat.mesh, error, {});
+    EXPECT_FALSE(plan.bisections.empty());
+    EXPECT_TRUE(plan.lines.empty());
+    for (const auto& split : plan.bisections) EXPECT_EQ(split.edge, error.edge[split.patch]);
+}
+
+// A few with huge errors must not cost a cycle each.
+TEST(Mark, ATenthOfThePatchesIsSplitInAnyCase)
+{
+    const Flat flat;
+    ErrorEstimate error = rising(flat.mesh);
+    error.eta[PatchId(0)] = 1e9;
+    const double n = static_cast<double>(flat.mesh.patch_count());
+    EXPECT_EQ(mark(flat.scene, flat.mesh, error, {.least = 0}).bisections.size(), 1U);
+    EXPECT_NEAR(static_cast<double>(mark(flat.scene, flat.mesh, error, {.least = 0.1}).bisections.size()), 0.1 * n, 1);
+}
+
+TEST(Mark, EdgesBelowTheSmallestStayWhole)
+{
+    const Flat flat;
+    const ErrorEstimate error = rising(flat.mesh);
+    const auto length = [&](PatchId p, std::size_t k) {
+        const auto c = flat.mesh.corners(p);
+        return glm::distance(flat.mesh.position(c[k]), flat.mesh.position(c[(k + 1) % 3]));
+    };
+    const double smallest = 0.35;
+    const RefinementPlan plan =
+        mark(flat.scene, flat.mesh, error, {.share = 1, .smallest = smallest / flat.scene.diameter});
+    std::size_t longer = 0;
+    for (const PatchId p : flat.mesh.patches()) longer += length(p, error.edge[p]) > smallest;
+    ASSERT_LT(longer, flat.mesh.patch_count());
+    EXPECT_EQ(plan.bisections.size(), longer);
+    for (const auto& split : plan.bisections) EXPECT_GT(length(split.patch, split.edge), smallest);
 }
 
 // ∫|B|² of a linear function over [−1,1]²: B = x has 4/3 for each band.

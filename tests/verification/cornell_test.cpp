@@ -50,7 +50,7 @@ const std::vector<DirectFactor> direct_factors{
 TEST(CornellBox, DirectFactorsOnTheAdaptedMesh)
 {
     const Scene scene = cornell_box();
-    const AdaptiveSolution solution = solve(scene, Refine::intensity, 20000);
+    const AdaptiveSolution solution = solve(scene, Refine::both, 20000);
     const RayCaster caster(scene);
     const PatchLocator locator(solution.mesh);
     const Exchange exchange{scene, caster, solution.mesh, locator};
@@ -82,7 +82,7 @@ TEST(CornellBox, ErrorBesideThePathTracedReference)
     const Scene scene = cornell_box();
     const auto points = verification::read_reference_points(PATCHLIGHT_DATA "/reference/cornell-box-points.csv");
     ASSERT_EQ(points.size(), 2000U);
-    const AdaptiveSolution adaptive = solve(scene, Refine::intensity, 20000);
+    const AdaptiveSolution adaptive = solve(scene, Refine::both, 20000);
     const AdaptiveSolution uniform = solve(scene, Refine::none, adaptive.mesh.patch_count());
     const PointError after = point_error(scene, adaptive.mesh, adaptive.vertex_B, points);
     const PointError before = point_error(scene, uniform.mesh, uniform.vertex_B, points);
