@@ -90,6 +90,7 @@ public:
         options.refine = refine;
         options.max_elements = elements;
         options.iterations = 60;
+        options.form_factors.rays = options.gather.rays = 64;  // nothing is seen but the light, and that exactly
         if (refine == Refine::none || refine == Refine::discontinuity) options.meshing.max_elements = elements;
         return solve_adaptively(scene, options);
     }
