@@ -4,6 +4,7 @@
 #include "meshing/patch_locator.h"
 #include "meshing/raw_scene.h"
 #include "solver/adaptive.h"
+#include "solver/element_light.h"
 #include "tests/verification/rectangle_light.h"
 
 #include <glm/mat3x3.hpp>
@@ -84,10 +85,11 @@ public:
         });
     }
 
-    AdaptiveSolution solve(Refine refine, std::size_t elements) const
+    AdaptiveSolution solve(Refine refine, std::size_t elements, Elements kind = Elements::linear) const
     {
         AdaptiveOptions options;
         options.refine = refine;
+        options.elements = kind;
         options.max_elements = elements;
         options.iterations = 60;
         options.form_factors.rays = options.gather.rays = 64;  // nothing is seen but the light, and that exactly
@@ -98,20 +100,18 @@ public:
     /// Triangles of the receiver alone.
     std::size_t count(const AdaptiveSolution& solution) const { return solution.mesh.patches_of(receiver).size(); }
 
-    /// Relative L2 error of the linear reconstruction.
-    double error(const AdaptiveSolution& solution) const
+    /// Relative L2 error of the linear reconstruction; of the quadratic one, if it was solved for.
+    double error(const AdaptiveSolution& solution, Elements kind = Elements::linear) const
     {
         const PatchLocator locator(solution.mesh);
+        const ElementLight light{solution.mesh, locator, solution.vertex_B,
+                                 kind == Elements::quadratic ? &solution.middle_B : nullptr};
         double num = 0, den = 0;
         for (std::size_t i = 0; i < side_; ++i)
             for (std::size_t j = 0; j < side_; ++j) {
                 const double known = exact_[i * side_ + j];
                 const Vec2 q = scene.surface(receiver).frame.to_plane(placement_(point(i, j)) - scene.center);
-                const PatchId patch = locator.locate(receiver, static_cast<float>(q.x), static_cast<float>(q.y));
-                const auto w = locator.barycentric(patch, q);
-                const auto c = solution.mesh.corners(patch);
-                double found = 0;
-                for (std::size_t k = 0; k < 3; ++k) found += w[k] * solution.vertex_B[c[k]].r;
+                const double found = light.at(receiver, q).r;
                 num += (found - known) * (found - known);
                 den += known * known;
             }

@@ -84,18 +84,23 @@ double rate(const std::vector<Point>& points)
 
 class ShadowLinesRate : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(ShadowLinesRate, IsThatOfLinearElementsOnSmoothLight)
+TEST_P(ShadowLinesRate, IsThatOfSmoothLight)
 {
     const SolvedShadow shadow(shadow_case(GetParam()));
-    std::vector<Point> points;
+    std::vector<Point> points, quadratic;
     for (const std::size_t n : {1024UL, 2048UL, 4096UL, 8192UL, 16384UL}) {
-        points.push_back(solved(shadow, Refine::both, n));
+        const AdaptiveSolution solution = shadow.solve(Refine::both, n, Elements::quadratic);
+        points.push_back({shadow.count(solution), shadow.error(solution), solution.error.relative});
+        quadratic.push_back({points.back().triangles, shadow.error(solution, Elements::quadratic)});
         print(GetParam(), points.back());
+        std::printf("| %s, quadratic | %zu | %.2e | |\n", GetParam(), quadratic.back().triangles,
+                    quadratic.back().error);
         // The indicator tracks the error: it is judged against the same light.
         EXPECT_NEAR(points.back().estimate / points.back().error, 1, 0.5) << n;
     }
-    std::printf("%s: the error falls like N^-%.2f\n", GetParam(), rate(points));
+    std::printf("%s: linear N^-%.2f, quadratic N^-%.2f\n", GetParam(), rate(points), rate(quadratic));
     EXPECT_GE(rate(points), 0.9);
+    EXPECT_GE(rate(quadratic), 1.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, ShadowLinesRate, ::testing::Values("narrow", "wide", "wall"),
