@@ -42,7 +42,7 @@ std::string place_text(const Scene& scene, const SurfaceLine& line, const Vec2& 
 std::vector<Discontinuity> strongest_lines(const Scene& scene)
 {
     const std::optional<DirectLight> direct = emitters_light(scene);
-    std::vector<Discontinuity> lines = discontinuities(scene, direct ? &*direct : nullptr);
+    std::vector<Discontinuity> lines = discontinuities(scene, direct ? &*direct : nullptr, {});
     const double away = 0.01 * scene.diameter;
     std::ranges::stable_sort(lines,
                              [&](const auto& a, const auto& b) { return strength(a, away) > strength(b, away); });
