@@ -19,7 +19,7 @@ TEST(QuadraticElements, ReachMoreOnTheSameMeshThanLinearOnes)
     std::vector<double> count, error;
     for (const std::size_t n : {1024UL, 2048UL, 4096UL, 8192UL, 16384UL}) {
         const AdaptiveSolution solution = narrow.solve(Refine::both, n, Elements::quadratic);
-        const double linear = narrow.error(solution, Elements::linear), quadratic = narrow.error(solution);
+        const double linear = narrow.error(solution, Elements::linear), quadratic = narrow.error(solution, Elements::quadratic);
         count.push_back(static_cast<double>(narrow.count(solution)));
         error.push_back(quadratic);
         std::printf("%8.0f | %.2e | %.2e\n", count.back(), linear, quadratic);

@@ -87,10 +87,11 @@ public:
     AdaptiveSolution solve(Refine refine, std::size_t elements, Elements kind = Elements::linear) const
     {
         AdaptiveOptions options;
-        options.elements = kind;
         options.refine = refine;
+        options.elements = kind;
         options.max_elements = elements;
         options.iterations = 60;
+        options.form_factors.rays = options.gather.rays = 64;  // nothing is seen but the light, and that exactly
         if (refine == Refine::none || refine == Refine::discontinuity) options.meshing.max_elements = elements;
         return solve_adaptively(scene, options);
     }
@@ -98,8 +99,8 @@ public:
     /// Triangles of the receiver alone.
     std::size_t count(const AdaptiveSolution& solution) const { return solution.mesh.patches_of(receiver).size(); }
 
-    /// Relative L2 error of the solution's elements; or of the linear ones alone.
-    double error(const AdaptiveSolution& solution, Elements kind = Elements::quadratic) const
+    /// Relative L2 error of the linear reconstruction; of the quadratic one, if it was solved for.
+    double error(const AdaptiveSolution& solution, Elements kind = Elements::linear) const
     {
         const PatchLocator locator(solution.mesh);
         const ElementLight light{solution.mesh, locator, solution.vertex_B,
