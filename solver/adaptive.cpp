@@ -212,7 +212,7 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
     if (options.direct == Direct::exact || uses_lines(options)) emitted = emitters_light(scene);
     const DirectLight* direct = emitted && options.direct == Direct::exact ? &*emitted : nullptr;
     std::vector<Discontinuity> lines;
-    if (uses_lines(options)) lines = discontinuities(scene, emitted ? &*emitted : nullptr);
+    if (uses_lines(options)) lines = discontinuities(scene, emitted ? &*emitted : nullptr, options.lines);
     const auto begin = Clock::now();
     PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);

@@ -2,6 +2,7 @@
 
 #include "formfactor/direct_light.h"
 #include "formfactor/shadow_lines.h"
+#include "solver/secondary_sources.h"
 #include "solver/system.h"
 
 #include <algorithm>
@@ -122,7 +123,7 @@ std::vector<Discontinuity> measure_all(const Scene& scene, const DirectLight& di
 
 }  // namespace
 
-std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct)
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options)
 {
     std::vector<SurfaceLine> contacts;
     for (const SurfaceLine& line : scene.contact_lines)
@@ -135,8 +136,19 @@ std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight
     std::vector<Rgb> exitance;
     for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
     std::vector<Discontinuity> found = measure_all(scene, *direct, exitance, contacts);
-    const auto shadows = measure_jumps(scene, *direct, exitance, shadow_lines(scene, emitters(scene)));
-    found.insert(found.end(), shadows.begin(), shadows.end());
+    const auto add_shadows = [&](std::span<const SurfaceId> sources, const DirectLight& light) {
+        const auto shadows = measure_jumps(scene, light, exitance, shadow_lines(scene, sources, {.blockers = false}));
+        found.insert(found.end(), shadows.begin(), shadows.end());
+    };
+    add_shadows(emitters(scene), *direct);
+    std::vector<SurfaceId> secondary;
+    exitance.clear();
+    for (const SecondarySource& source :
+         secondary_sources(scene, *direct, options.secondary_share, options.most_secondary)) {
+        secondary.push_back(source.surface);
+        exitance.push_back(source.exitance);
+    }
+    if (!secondary.empty()) add_shadows(secondary, DirectLight(scene, secondary));
     return found;
 }
 

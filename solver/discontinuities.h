@@ -21,21 +21,26 @@ struct Discontinuity {
     double second = 0;  ///< W/m⁴
 };
 
-/// All lines on surfaces that reflect: the scene's contact lines, then those of the emitters' shadows (see
-/// shadow_lines()), with their jumps in `direct`, which must be emitters_light() of the scene. Contact lines are kept
-/// also where the direct light happens not to jump. Without `direct`: contact lines alone, jumps unknown (0).
-std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct);
+struct LineOptions {
+    /// A line is inserted when, left out, it would cost more elements than this on its two sides.
+    double least_saving = 6;
+    /// Of the light reflected first: the brightest surfaces that hold this share cast shadows with lines, too. Such
+    /// wide sources' lines rarely pay, and finding them among many blockers takes long: none unless asked for.
+    double secondary_share = 0;
+    std::size_t most_secondary = 4;  ///< of these surfaces
+};
+
+/// All lines on surfaces that reflect: the scene's contact lines, then those of the emitters' shadows and of secondary
+/// sources' (see shadow_lines(), secondary_sources()), with their jumps in `direct`, which must be emitters_light() of
+/// the scene. Contact lines are kept also where the direct light happens not to jump. Without `direct`: contact lines
+/// alone, jumps unknown (0).
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options);
 
 /// Measures the jumps in the exact direct light of `exitance` (W/m², one a source of `direct`): a parabola through
 /// three points on either side of the line's middle and, where nothing but the second derivative jumps there, of its
 /// quarters, the largest. Lines without any jump beyond rounding, and those on a surface's border, are left out.
 std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
                                          std::span<const SurfaceLine> lines);
-
-struct LineOptions {
-    /// A line is inserted when, left out, it would cost more elements than this on its two sides.
-    double least_saving = 6;
-};
 
 /// How many elements a line costs when it is left out and the mesh is refined along it until each element's squared
 /// error is `element_error` (W²/m²): 2ℓ/h, where an element of size h across a jump J of the k-th derivative has the

@@ -43,7 +43,7 @@ std::string place_text(const Scene& scene, const SurfaceLine& line, const Vec2& 
 std::vector<Discontinuity> strongest_lines(const Scene& scene)
 {
     const std::optional<DirectLight> direct = emitters_light(scene);
-    std::vector<Discontinuity> lines = discontinuities(scene, direct ? &*direct : nullptr);
+    std::vector<Discontinuity> lines = discontinuities(scene, direct ? &*direct : nullptr, {});
     // An element's share of an error of 1 % on 8,000 elements, if the emitters' light were spread evenly.
     const double area = total_area(scene), level = 0.01 * emitted_power(scene) / area;
     const double element_error = level * level * area / 8000;

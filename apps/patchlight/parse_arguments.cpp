@@ -35,6 +35,13 @@ void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
                    "both, or nothing")
         ->check(CLI::IsMember(words(refine_names())))
         ->capture_default_str();
+    app.add_option(
+           "--secondary-sources", o.lines.secondary_share,
+           "share of the light reflected first whose surfaces, the brightest four at most, are taken for sources "
+           "of shadow lines, too")
+        ->check(number_between(0, 1))
+        ->type_name("SHARE")
+        ->capture_default_str();
     app.add_option("--max-edge", t.max_edge,
                    "longest edge of the first mesh, in --unit [a twelfth of the scene's diameter; none, discontinuity: "
                    "what --max-elements allows]")

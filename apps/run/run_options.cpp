@@ -146,7 +146,10 @@ Json json_of(const AdaptiveOptions& o)
               {"share", o.mark.share},
               {"least", o.mark.least},
               {"smallest", o.mark.smallest}}},
-            {"lines", {{"least_saving", o.lines.least_saving}}}};
+            {"lines",
+             {{"least_saving", o.lines.least_saving},
+              {"secondary_share", o.lines.secondary_share},
+              {"most_secondary", o.lines.most_secondary}}}};
 }
 
 Json json_of(const SceneOptions& o)
