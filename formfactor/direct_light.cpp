@@ -26,7 +26,7 @@ PlaneRectangle rectangle_around(const Scene& scene, const Surface& surface)
 
 }  // namespace
 
-DirectLight::DirectLight(const Scene& scene, std::span<const SurfaceId> sources)
+DirectLight::DirectLight(const Scene& scene, std::span<const SurfaceId> sources, const WorkMonitor& monitor)
     : sources_(sources.begin(), sources.end()), blockers_(scene)
 {
     const std::vector<Facet> facets = facets_of(scene);
@@ -43,9 +43,11 @@ DirectLight::DirectLight(const Scene& scene, std::span<const SurfaceId> sources)
     }
     sights_.resize(reflecting.size() * parts_.size());
     tbb::parallel_for(std::size_t{0}, sights_.size(), [&](std::size_t i) {
+        if (monitor.stop.stop_requested()) return;
         prepare(receivers_[reflecting[i / parts_.size()]], parts_[i % parts_.size()], least_cell * scene.diameter,
                 sights_[i]);
     });
+    if (monitor.stop.stop_requested()) throw Interrupted();
 }
 
 void DirectLight::prepare(const Receiver& receiver, const Part& part, double least_side,

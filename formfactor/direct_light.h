@@ -2,6 +2,7 @@
 
 #include "formfactor/blocker_cells.h"
 #include "formfactor/point_factor.h"
+#include "formfactor/work_monitor.h"
 
 #include <cstddef>
 #include <memory>
@@ -24,8 +25,9 @@ public:
         PointScratch point;
     };
 
-    /// Built on all threads of the arena; the same at any number of them. Keeps nothing of the scene.
-    DirectLight(const Scene& scene, std::span<const SurfaceId> sources);
+    /// Built on all threads of the arena; the same at any number of them. Keeps nothing of the scene. Throws
+    /// Interrupted.
+    DirectLight(const Scene& scene, std::span<const SurfaceId> sources, const WorkMonitor& monitor = {});
 
     std::size_t source_count() const { return sources_.size(); }
     SurfaceId source(std::size_t k) const { return sources_[k]; }

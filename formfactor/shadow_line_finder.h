@@ -17,7 +17,7 @@ class ShadowLineFinder {
 public:
     ShadowLineFinder(const Scene& scene, std::span<const SurfaceId> sources, const ShadowLineOptions& options);
 
-    std::vector<SurfaceLine> find(ShadowLineCounts* counts) const;
+    std::vector<SurfaceLine> find(ShadowLineCounts* counts, const WorkMonitor& monitor) const;
 
 private:
     using Lines = std::vector<SurfaceLine>;

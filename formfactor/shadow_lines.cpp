@@ -149,13 +149,15 @@ void ShadowLineFinder::find(const Source& source, std::size_t element, Work& wor
     for (const std::uint32_t apex : source.corners) source_plane(source, at(apex), work, lines);
 }
 
-std::vector<SurfaceLine> ShadowLineFinder::find(ShadowLineCounts* counts) const
+std::vector<SurfaceLine> ShadowLineFinder::find(ShadowLineCounts* counts, const WorkMonitor& monitor) const
 {
     const std::size_t elements = edges_.size() + corners_.size() + scene_.surfaces.size() + 1;
     std::vector<Lines> found(sources_.size() * elements);
     tbb::enumerable_thread_specific<Work> work;
-    tbb::parallel_for(std::size_t{0}, found.size(),
-                      [&](std::size_t k) { find(sources_[k / elements], k % elements, work.local(), found[k]); });
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
+        if (!monitor.stop.stop_requested()) find(sources_[k / elements], k % elements, work.local(), found[k]);
+    });
+    if (monitor.stop.stop_requested()) throw Interrupted();
     if (counts != nullptr)
         for (const Work& w : work) {
             counts->pencils += w.counts.pencils;
@@ -170,9 +172,10 @@ std::vector<SurfaceLine> ShadowLineFinder::find(ShadowLineCounts* counts) const
 }
 
 std::vector<SurfaceLine> shadow_lines(const Scene& scene, std::span<const SurfaceId> sources,
-                                      const ShadowLineOptions& options, ShadowLineCounts* counts)
+                                      const ShadowLineOptions& options, ShadowLineCounts* counts,
+                                      const WorkMonitor& monitor)
 {
-    return ShadowLineFinder(scene, sources, options).find(counts);
+    return ShadowLineFinder(scene, sources, options).find(counts, monitor);
 }
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactor/work_monitor.h"
 #include "meshing/scene.h"
 #include "meshing/surface_line.h"
 
@@ -34,9 +35,10 @@ struct ShadowLineCounts {
 /// the points where it cuts the source's rim. Missing ones cost convergence, nothing else. Where an edge and a segment
 /// of a source lie in one plane and blockers leave little of the segment visible, a line may be cut short: its ends and
 /// three places between are tried. A few lines may be there across which the light is smooth. Lines that coincide are
-/// one (see merged_lines). Runs in parallel; the result depends on neither the threads nor the order of surfaces. Time
-/// grows with sources × (edges + corners) and what stands in the way of each.
+/// one (see merged_lines). Runs in parallel; the result depends on neither the threads nor the order of surfaces.
+/// Throws Interrupted. Time grows with sources × (edges + corners) and what stands in the way of each.
 std::vector<SurfaceLine> shadow_lines(const Scene& scene, std::span<const SurfaceId> sources,
-                                      const ShadowLineOptions& options = {}, ShadowLineCounts* counts = nullptr);
+                                      const ShadowLineOptions& options = {}, ShadowLineCounts* counts = nullptr,
+                                      const WorkMonitor& monitor = {});
 
 }  // namespace patchlight

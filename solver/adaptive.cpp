@@ -190,6 +190,21 @@ bool uses_lines(const AdaptiveOptions& options)
     return options.refine == Refine::discontinuity || options.refine == Refine::both;
 }
 
+/// The emitters' light, as far as it is asked for, and where it breaks off. Depends on the scene alone.
+struct Emitted {
+    Emitted(const Scene& scene, const AdaptiveOptions& options, const AdaptiveObservers& observers)
+    {
+        const WorkMonitor monitor{observers.stop, {}};
+        if (options.direct == Direct::exact || uses_lines(options)) exact = emitters_light(scene, monitor);
+        if (observers.on_progress && uses_lines(options)) observers.on_progress({.stage = "lines"});
+        if (uses_lines(options)) lines = discontinuities(scene, light(), options.lines, monitor);
+    }
+    const DirectLight* light() const { return exact ? &*exact : nullptr; }
+
+    std::optional<DirectLight> exact;
+    std::vector<Discontinuity> lines;
+};
+
 RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,
                          std::span<const Discontinuity> lines, const AdaptiveOptions& options)
 {
@@ -208,12 +223,10 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                                   const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
-    std::optional<DirectLight> emitted;
-    if (options.direct == Direct::exact || uses_lines(options)) emitted = emitters_light(scene);
-    const DirectLight* direct = emitted && options.direct == Direct::exact ? &*emitted : nullptr;
-    std::vector<Discontinuity> lines;
-    if (uses_lines(options)) lines = discontinuities(scene, emitted ? &*emitted : nullptr, options.lines);
     const auto begin = Clock::now();
+    const Emitted emitted(scene, options, observers);
+    const DirectLight* direct = options.direct == Direct::exact ? emitted.light() : nullptr;
+    const std::vector<Discontinuity>& lines = emitted.lines;
     PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
     Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
     double meshing = seconds_since(begin);  // of the mesh that the next cycle works on

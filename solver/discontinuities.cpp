@@ -111,19 +111,22 @@ bool is_on_border(const Scene& scene, const SurfaceLine& line)
 }
 
 std::vector<Discontinuity> measure_all(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
-                                       std::span<const SurfaceLine> lines)
+                                       std::span<const SurfaceLine> lines, const WorkMonitor& monitor)
 {
     const JumpMeter meter(scene, direct, exitance);
     std::vector<Discontinuity> found(lines.size());
     tbb::enumerable_thread_specific<DirectLight::Scratch> scratches;
-    tbb::parallel_for(std::size_t{0}, lines.size(),
-                      [&](std::size_t i) { found[i] = meter.measure(lines[i], scratches.local()); });
+    tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t i) {
+        if (!monitor.stop.stop_requested()) found[i] = meter.measure(lines[i], scratches.local());
+    });
+    if (monitor.stop.stop_requested()) throw Interrupted();
     return found;
 }
 
 }  // namespace
 
-std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options)
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options,
+                                           const WorkMonitor& monitor)
 {
     std::vector<SurfaceLine> contacts;
     for (const SurfaceLine& line : scene.contact_lines)
@@ -135,9 +138,10 @@ std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight
     }
     std::vector<Rgb> exitance;
     for (const SurfaceId s : emitters(scene)) exitance.push_back(scene.material_of(s).emission);
-    std::vector<Discontinuity> found = measure_all(scene, *direct, exitance, contacts);
+    std::vector<Discontinuity> found = measure_all(scene, *direct, exitance, contacts, monitor);
     const auto add_shadows = [&](std::span<const SurfaceId> sources, const DirectLight& light) {
-        const auto shadows = measure_jumps(scene, light, exitance, shadow_lines(scene, sources, {.blockers = false}));
+        const std::vector<SurfaceLine> cast = shadow_lines(scene, sources, {.blockers = false}, nullptr, monitor);
+        const auto shadows = measure_jumps(scene, light, exitance, cast, monitor);
         found.insert(found.end(), shadows.begin(), shadows.end());
     };
     add_shadows(emitters(scene), *direct);
@@ -148,14 +152,14 @@ std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight
         secondary.push_back(source.surface);
         exitance.push_back(source.exitance);
     }
-    if (!secondary.empty()) add_shadows(secondary, DirectLight(scene, secondary));
+    if (!secondary.empty()) add_shadows(secondary, DirectLight(scene, secondary, monitor));
     return found;
 }
 
 std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
-                                         std::span<const SurfaceLine> lines)
+                                         std::span<const SurfaceLine> lines, const WorkMonitor& monitor)
 {
-    std::vector<Discontinuity> found = measure_all(scene, direct, exitance, lines);
+    std::vector<Discontinuity> found = measure_all(scene, direct, exitance, lines, monitor);
     std::erase_if(found, [&](const Discontinuity& d) {
         return (d.value == 0 && d.slope == 0 && d.second == 0) || is_on_border(scene, d.line);
     });

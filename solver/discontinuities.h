@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactor/work_monitor.h"
 #include "meshing/refinement.h"
 #include "meshing/surface_line.h"
 #include "solver/estimate.h"
@@ -33,14 +34,15 @@ struct LineOptions {
 /// All lines on surfaces that reflect: the scene's contact lines, then those of the emitters' shadows and of secondary
 /// sources' (see shadow_lines(), secondary_sources()), with their jumps in `direct`, which must be emitters_light() of
 /// the scene. Contact lines are kept also where the direct light happens not to jump. Without `direct`: contact lines
-/// alone, jumps unknown (0).
-std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options);
+/// alone, jumps unknown (0). Throws Interrupted.
+std::vector<Discontinuity> discontinuities(const Scene& scene, const DirectLight* direct, const LineOptions& options,
+                                           const WorkMonitor& monitor = {});
 
 /// Measures the jumps in the exact direct light of `exitance` (W/m², one a source of `direct`): a parabola through
 /// three points on either side of the line's middle and, where nothing but the second derivative jumps there, of its
 /// quarters, the largest. Lines without any jump beyond rounding, and those on a surface's border, are left out.
 std::vector<Discontinuity> measure_jumps(const Scene& scene, const DirectLight& direct, std::span<const Rgb> exitance,
-                                         std::span<const SurfaceLine> lines);
+                                         std::span<const SurfaceLine> lines, const WorkMonitor& monitor = {});
 
 /// How many elements a line costs when it is left out and the mesh is refined along it until each element's squared
 /// error is `element_error` (W²/m²): 2ℓ/h, where an element of size h across a jump J of the k-th derivative has the

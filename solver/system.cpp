@@ -32,12 +32,12 @@ Radiosity emittance(const Scene& scene, const PatchMesh& mesh)
     return E;
 }
 
-std::optional<DirectLight> emitters_light(const Scene& scene)
+std::optional<DirectLight> emitters_light(const Scene& scene, const WorkMonitor& monitor)
 {
     constexpr std::size_t most_emitters = 500;
     const std::vector<SurfaceId> sources = emitters(scene);
     if (sources.size() > most_emitters) return {};
-    return std::optional<DirectLight>(std::in_place, scene, sources);
+    return std::optional<DirectLight>(std::in_place, scene, sources, monitor);
 }
 
 Rgb direct_irradiance(const Scene& scene, const DirectLight& direct, const Vec3& place, SurfaceId surface,

@@ -24,7 +24,7 @@ struct Exchange {
 std::vector<SurfaceId> emitters(const Scene& scene);
 
 /// Exact light of the scene's emitters, in the order of emitters(); nothing when more than 500 surfaces emit.
-std::optional<DirectLight> emitters_light(const Scene& scene);
+std::optional<DirectLight> emitters_light(const Scene& scene, const WorkMonitor& monitor = {});
 
 /// The emitters' light that arrives at a point, exactly, W/m².
 Rgb direct_irradiance(const Scene& scene, const DirectLight& direct, const Vec3& place, SurfaceId surface,
