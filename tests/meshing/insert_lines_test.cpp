@@ -86,7 +86,7 @@ std::vector<SurfaceLine> random_lines(const PlaneLoops& loops, std::size_t count
     return lines;
 }
 
-/// All inside the polygon is there, a hundredth of the places at most excepted by more than `bent`, none by `most`.
+/// All that is inside the polygon is there, no place of it further off than `most` of the diameter.
 void expect_inside_parts(const LinedSurface& surface, const PlaneLoops& loops, const std::vector<SurfaceLine>& lines,
                          double most)
 {
@@ -96,7 +96,6 @@ void expect_inside_parts(const LinedSurface& surface, const PlaneLoops& loops, c
                                 return is_inside(loops, q, 1e-5 * surface.scene.diameter);
                             }));
     EXPECT_LE(farthest, most);
-    ::testing::Test::RecordProperty("farthest", std::to_string(farthest));
 }
 
 }  // namespace

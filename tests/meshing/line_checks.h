@@ -75,8 +75,8 @@ template <class Used>
 double distance_to_lines(const LinedSurface& surface, const SurfaceLine& line, const Used& used)
 {
     double farthest = 0;
-    for (int i = 0; i <= 200; ++i) {
-        const Vec2 q = line.start + (i / 200.0) * (line.end - line.start);
+    for (int i = 0; i <= 50; ++i) {
+        const Vec2 q = line.start + (i / 50.0) * (line.end - line.start);
         if (!used(q)) continue;
         double nearest = surface.scene.diameter;
         for (const auto& edge : surface.triangulation.lines)
