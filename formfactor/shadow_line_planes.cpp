@@ -78,14 +78,17 @@ bool ShadowLineFinder::in_one_plane(const Segment& a, const Segment& b) const
     return std::abs(glm::dot(n, b[0] - a[0])) <= slack && std::abs(glm::dot(n, b[1] - a[0])) <= slack;
 }
 
-/// Where an edge is seen from the source to pass another of the same plane, which stands behind it, all along: a slit
-/// between them closes, or one takes over from the other.
-void ShadowLineFinder::past_edges_of_one_plane(const Source& source, std::uint32_t edge, Work& work, Lines& lines) const
+/// Whether two segments lie neither in one plane nor in one line.
+bool ShadowLineFinder::skew(const Segment& a, const Segment& b) const
 {
-    const Segment e{at(edges_[edge][0]), at(edges_[edge][1])};
+    return glm::length(normal_of(a, b)) > snap_ * glm::length(a[1] - a[0]) && !in_one_plane(a, b);
+}
+
+/// Around the shadow that an edge throws: behind it, and on the other side of planes with the source on one side. The
+/// edge is in front of the source.
+std::vector<FacetTree::HalfSpace> ShadowLineFinder::shadow_of(const Source& source, const Segment& e) const
+{
     const double h0 = above(source, e[0]), h1 = above(source, e[1]);
-    if (h0 < 0 || h1 < 0 || (h0 == 0 && h1 == 0)) return;
-    // The shadow that the edge throws lies behind it, and on the other side of planes with the source on one side.
     std::vector<FacetTree::HalfSpace> shadow{{source.normal, source.offset + std::min(h0, h1)}};
     const auto add = [&](Vec3 n, const Vec3& on, const Vec3& other) {
         double least = 0, most = 0;
@@ -103,7 +106,17 @@ void ShadowLineFinder::past_edges_of_one_plane(const Source& source, std::uint32
         add(glm::cross(at(s[0]) - e[0], at(s[1]) - e[0]), e[0], e[1]);
         add(glm::cross(at(s[0]) - e[1], at(s[1]) - e[1]), e[1], e[0]);
     }
-    edge_tree_.visit(shadow, [&](std::uint32_t f) {
+    return shadow;
+}
+
+/// Where an edge is seen from the source to pass another of the same plane, which stands behind it, all along: a slit
+/// between them closes, or one takes over from the other.
+void ShadowLineFinder::past_edges_of_one_plane(const Source& source, std::uint32_t edge, Work& work, Lines& lines) const
+{
+    const Segment e{at(edges_[edge][0]), at(edges_[edge][1])};
+    const double h0 = above(source, e[0]), h1 = above(source, e[1]);
+    if (h0 < 0 || h1 < 0 || (h0 == 0 && h1 == 0)) return;
+    edge_tree_.visit(shadow_of(source, e), [&](std::uint32_t f) {
         const Edge &a = edges_[edge], &b = edges_[f];
         if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return true;
         const Segment other{at(b[0]), at(b[1])};

@@ -164,6 +164,11 @@ std::vector<SurfaceLine> ShadowLineFinder::find(ShadowLineCounts* counts, const 
             counts->receivers += w.counts.receivers;
         }
     Lines all;
+    for (std::size_t s = 0; options_.eee && s < sources_.size(); ++s) {
+        std::vector<bool> lit(edges_.size());
+        for (std::size_t e = 0; e < edges_.size(); ++e) lit[e] = !found[s * elements + e].empty();
+        add_curves(sources_[s], lit, all);
+    }
     for (Lines& lines : found) {
         all.insert(all.end(), lines.begin(), lines.end());
         Lines().swap(lines);

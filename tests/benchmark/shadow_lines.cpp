@@ -48,7 +48,7 @@ void measure(const char* file)
     for (const SurfaceLine& l : lines) ++by_kind[static_cast<std::size_t>(l.kind)];
     std::printf("%-24s %8zu %8zu %7zu %10zu %10zu %8zu", std::filesystem::path(file).filename().c_str(),
                 scene.surfaces.size(), edges, sources.size(), counts.pencils, counts.receivers, lines.size());
-    for (const LineKind kind : {LineKind::ev, LineKind::ve, LineKind::plane})
+    for (const LineKind kind : {LineKind::ev, LineKind::ve, LineKind::eee, LineKind::plane})
         std::printf(" %7zu", by_kind[static_cast<std::size_t>(kind)]);
     std::printf(" %8.2f %8.2f %8ld %9.3f %9.3f\n", seconds, cpu, usage.ru_maxrss / 1024,
                 1e6 * cpu / static_cast<double>(std::max<std::size_t>(1, counts.pencils)),
@@ -60,9 +60,9 @@ void measure(const char* file)
 
 int main(int argc, char** argv)
 {
-    std::printf("%-24s %8s %8s %7s %10s %10s %8s %7s %7s %7s %8s %8s %8s %9s %9s\n", "scene", "surfaces", "edges",
-                "sources", "pencils", "receivers", "lines", "EV", "VE", "plane", "seconds", "cpu", "MiB", "us/pencil",
-                "us/recv");
+    std::printf("%-24s %8s %8s %7s %10s %10s %8s %7s %7s %7s %7s %8s %8s %8s %9s %9s\n", "scene", "surfaces", "edges",
+                "sources", "pencils", "receivers", "lines", "EV", "VE", "EEE", "plane", "seconds", "cpu", "MiB",
+                "us/pencil", "us/recv");
     for (int k = 1; k < argc; ++k) patchlight::measure(argv[k]);
     return 0;
 }

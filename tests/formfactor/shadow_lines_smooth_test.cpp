@@ -89,6 +89,17 @@ public:
     }
 
     Vec3 lift(const Vec2& q) const { return frame_.lift(q); }
+    bool cuts_lamp() const
+    {
+        double least = 0, most = 0;
+        for (const Facet& facet : lamp_)
+            for (const Vec3& p : facet.corners) {
+                const double h = glm::dot(frame_.n, p - frame_.origin);
+                least = std::min(least, h);
+                most = std::max(most, h);
+            }
+        return least < -1e-7 && most > 1e-7;
+    }
 
 private:
     const Blockers& blockers_;
@@ -154,16 +165,23 @@ std::vector<SurfaceLine> contacts(const Scene& scene, SurfaceId on)
     return result;
 }
 
-/// Whether two skew edges of blockers and an edge of the lamp come into line between two points: EEE, not looked for.
+/// Whether two skew edges of blockers and an edge of the lamp come into line between two points: EEE. Edges in the
+/// surface's own plane are no blockers'.
 class ThreeEdges {
 public:
-    ThreeEdges(const Scene& scene, SurfaceId lamp)
+    ThreeEdges(const Scene& scene, SurfaceId lamp, SurfaceId on)
     {
+        const PlaneFrame& frame = scene.surface(on).frame;
+        const auto in_plane = [&](const Edge& e) {
+            return std::ranges::all_of(
+                e, [&](const Vec3& p) { return std::abs(glm::dot(frame.n, p - frame.origin)) < 1e-7; });
+        };
         for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
             for (const auto& loop : scene.surfaces[s].loops)
                 for (std::size_t k = 0; k < loop.size(); ++k)
                     (s == lamp.value ? lamp_ : others_)
                         .push_back({scene.vertices[loop[k]], scene.vertices[loop[(k + 1) % loop.size()]]});
+        std::erase_if(others_, in_plane);
     }
     bool meet_between(const Vec3& from, const Vec3& to) const
     {
@@ -201,7 +219,8 @@ struct Tally {
     std::size_t crossed = 0;      ///< lines
     std::size_t silent = 0;       ///< across which nothing breaks
     std::size_t three_edges = 0;  ///< breaks without a line where three edges meet
-    std::size_t unexplained = 0;  ///< breaks without either
+    std::size_t horizon = 0;      ///< other breaks without a line on surfaces whose plane cuts the lamp
+    std::size_t unexplained = 0;  ///< breaks without any of these
 };
 
 constexpr int steps = 2000;  ///< of a probe
@@ -237,7 +256,7 @@ void walk(const SurfaceLight& light, const Vec2& from, const Vec2& to, const std
             ++tally.three_edges;
             continue;
         }
-        ++tally.unexplained;
+        ++(light.cuts_lamp() ? tally.horizon : tally.unexplained);
     }
     for (std::size_t c = 0; c < lines.size(); ++c) {
         if (lines[c] * steps < 3 || lines[c] * steps > steps - 4) continue;
@@ -253,14 +272,17 @@ Tally walk_room(std::uint64_t seed, int things)
     SurfaceId lamp;
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
         if (scene.material_of(SurfaceId(s)).emits()) lamp = SurfaceId(s);
-    const std::vector<SurfaceLine> lines = shadow_lines(scene, std::array{lamp});
-    const ThreeEdges three_edges(scene, lamp);
+    // Pieces within a tenth of a step of the curves, on the smallest things, too.
+    ShadowLineOptions options;
+    options.eee_tolerance = 1e-6;
+    const std::vector<SurfaceLine> lines = shadow_lines(scene, std::array{lamp}, options);
     RandomNumbers random(seed, 0x9c0be);
     Tally tally;
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
         const SurfaceId id(s);
         if (!scene.material_of(id).reflects()) continue;
         const SurfaceLight light(scene, blockers, lamp, id);
+        const ThreeEdges three_edges(scene, lamp, id);
         const std::vector<SurfaceLine> contact = contacts(scene, id);
         const auto& loop = scene.surface(id).loops[0];
         for (int probe = 0; probe < 2; ++probe) {
@@ -286,6 +308,7 @@ Tally walk_rooms(std::uint64_t rooms, int things)
         sum.crossed += tally.crossed;
         sum.silent += tally.silent;
         sum.three_edges += tally.three_edges;
+        sum.horizon += tally.horizon;
         sum.unexplained += tally.unexplained;
     }
     return sum;
@@ -297,19 +320,21 @@ TEST(ShadowLines, BetweenThemTheLightIsSmooth)
     const Tally tally = walk_rooms(200, 1);
     EXPECT_GT(tally.crossed, 1000U);
     EXPECT_EQ(tally.unexplained, 0U);
-    EXPECT_EQ(tally.three_edges, 0U);
+    EXPECT_EQ(tally.three_edges + tally.horizon, 0U);
     // Edge on a line's end, or where the light is too weak to show its break.
     EXPECT_LE(tally.silent, tally.crossed / 500);
 }
 
-// With several, EEE curves are missing; and on surfaces whose plane cuts the lamp the events of the point in which it
-// cuts the lamp's rim, where the light arrives at grazing incidence.
+// With several there are EEE curves, too: without them 36 breaks stay at three edges. On surfaces whose plane cuts the
+// lamp the events of the point in which it cuts the lamp's rim, where the light arrives at grazing incidence, are
+// missing.
 TEST(ShadowLines, BehindSeveralThingsNearlyAllAreThere)
 {
     const Tally tally = walk_rooms(100, 3);
     EXPECT_GT(tally.crossed, 1500U);
-    EXPECT_LE(tally.unexplained, tally.crossed / 200);
-    EXPECT_LE(tally.three_edges, tally.crossed / 10);
+    EXPECT_LE(tally.unexplained, tally.crossed / 1000);
+    EXPECT_LE(tally.three_edges, tally.crossed / 500);
+    EXPECT_LE(tally.horizon, tally.crossed / 25);
     EXPECT_LE(tally.silent, tally.crossed / 500);
 }
 
