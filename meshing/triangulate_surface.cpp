@@ -65,10 +65,8 @@ public:
         mark_inside();
     }
 
-    /// Positions aren't set: the triangulation's vertices are points, as `points` tells.
-    SurfaceTriangulation extract(std::vector<std::uint32_t>& points) const;
-
-    const std::vector<Vec2>& points() const { return lines_.points; }
+    /// What lies inside. The points given lie at `places`, those that came since are lifted from the plane.
+    SurfaceTriangulation extract(const MeshingPlane& plane, const std::vector<Vec3>& places) const;
 
 private:
     void name_edges(const PlanePiece& piece, VertexHandle start, Triangulation::Constraint_id id)
@@ -127,10 +125,10 @@ private:
     std::vector<SurfaceTriangulation::Line> line_edges_;  // between points
 };
 
-SurfaceTriangulation ArrangementTriangulation::extract(std::vector<std::uint32_t>& points) const
+SurfaceTriangulation ArrangementTriangulation::extract(const MeshingPlane& plane, const std::vector<Vec3>& places) const
 {
     SurfaceTriangulation result;
-    points.clear();
+    std::vector<std::uint32_t> points;  // that the triangulation's vertices are
     // A vertex where the border touches itself has several fans of patches: each gets a vertex of its own, so that the
     // patches are a manifold. The copies of a point stay beside each other.
     std::map<std::pair<VertexHandle, FaceHandle>, std::uint32_t> index_of;
@@ -156,6 +154,8 @@ SurfaceTriangulation ArrangementTriangulation::extract(std::vector<std::uint32_t
         const bool inside = edges.contains({line.vertices[1], line.vertices[0]});
         if (forward != edges.end() && inside) result.lines.push_back({forward->second, line.kind});
     }
+    for (const std::uint32_t point : points)
+        result.positions.push_back(point < places.size() ? places[point] : plane.lift(lines_.points[point]));
     return result;
 }
 
@@ -199,12 +199,7 @@ SurfaceTriangulation with_lines(const MeshingPlane& plane, const SurfaceTriangul
     const std::vector<PlanePiece> old_pieces = given.pieces;
     LineArrangement arranged = arrange_lines(std::move(given), lines, merge);
     const std::vector<Vec3> places = places_of(plane, triangulation, old_pieces, arranged);
-    const ArrangementTriangulation inserted(std::move(arranged));
-    std::vector<std::uint32_t> points;
-    SurfaceTriangulation result = inserted.extract(points);
-    for (const std::uint32_t point : points)
-        result.positions.push_back(point < places.size() ? places[point] : plane.lift(inserted.points()[point]));
-    return result;
+    return ArrangementTriangulation(std::move(arranged)).extract(plane, places);
 }
 
 double area_of(const MeshingPlane& plane, const SurfaceTriangulation& triangulation)
@@ -251,12 +246,7 @@ SurfaceTriangulation triangulate_polygon(const Scene& scene, SurfaceId surface)
         for (std::size_t i = 0; i < loop.size(); ++i)
             outline.pieces.push_back(
                 {{point_of[loop[i]], point_of[loop[(i + 1) % loop.size()]]}, LineKind::contact, true, 0});
-    const ArrangementTriangulation triangulation(std::move(outline));
-    std::vector<std::uint32_t> points;
-    SurfaceTriangulation result = triangulation.extract(points);
-    for (const std::uint32_t point : points)
-        result.positions.push_back(point < places.size() ? places[point] : plane.lift(triangulation.points()[point]));
-    return result;
+    return ArrangementTriangulation(std::move(outline)).extract(plane, places);
 }
 
 SurfaceTriangulation insert_lines(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,

@@ -29,7 +29,8 @@ ExtraPoints extra_points(const Exchange& exchange)
     return extra;
 }
 
-/// The edge with the highest score; of lengths a twentieth decides where scores are much alike.
+/// The edge with the highest score; where scores are equal to a thousandth, or all 0, the longest: what the middles
+/// can't tell, as on a patch whose middle alone is wrong, must not make needles.
 std::uint8_t best_edge(const PatchMesh& mesh, PatchId p, std::array<double, 3> scores)
 {
     const auto c = mesh.corners(p);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "tests/temporary_folder.h"
+
 #include <gtest/gtest.h>
 
 #include <cerrno>
@@ -132,17 +134,7 @@ private:
 /// A folder for a test, and the command run in it.
 class CommandTest : public ::testing::Test {
 protected:
-    CommandTest()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "patchlight-test-XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-        std::filesystem::create_directory(folder_ / "scratch");
-    }
-    ~CommandTest() override
-    {
-        std::error_code error;
-        std::filesystem::remove_all(folder_, error);
-    }
+    CommandTest() { std::filesystem::create_directory(folder_ / "scratch"); }
 
     Outcome run(const std::vector<std::string>& arguments, const Surroundings& around = {})
     {
@@ -202,7 +194,8 @@ protected:
     static constexpr const char* view_text =
         "{\"name\": \"front\", \"from\": [0.5, 0.6, 2.4], \"to\": [0.5, 0.4, 0], \"up\": [0, 1, 0], \"fov\": 40}";
 
-    std::filesystem::path folder_;
+    const TemporaryFolder temporary_;
+    const std::filesystem::path& folder_ = temporary_.path();
 };
 
 }  // namespace patchlight::testing

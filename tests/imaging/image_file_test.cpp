@@ -1,6 +1,7 @@
 #include "apps/imaging/comparison.h"
 #include "apps/imaging/exposure.h"
 #include "apps/imaging/image_file.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -23,21 +24,12 @@ Image ramp(int width, int height, float scale)
 
 class ImageFileTest : public ::testing::Test {
 protected:
-    ~ImageFileTest() override
-    {
-        std::error_code error;
-        std::filesystem::remove(file_, error);
-    }
-
     ImageFile through_a_file(const std::vector<unsigned char>& bytes, const std::string& extension)
     {
-        file_ = std::filesystem::temp_directory_path() / ("patchlight-image-" + std::to_string(::getpid()) + extension);
-        std::ofstream(file_, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()),
-                                                     static_cast<std::streamsize>(bytes.size()));
-        return read_image(file_);
+        return read_image(folder_.write("image" + extension, std::string(bytes.begin(), bytes.end())));
     }
 
-    std::filesystem::path file_;
+    const testing::TemporaryFolder folder_;
 };
 
 TEST_F(ImageFileTest, APngKeepsEightBits)
@@ -70,15 +62,14 @@ TEST_F(ImageFileTest, NoDateOfTodayGetsIn)
 
 TEST(ImageFile, ABrokenFileIsAnErrorWithItsPath)
 {
-    const auto file = std::filesystem::temp_directory_path() / ("patchlight-broken-" + std::to_string(::getpid()) + ".png");
-    std::ofstream(file) << "not a picture";
+    const testing::TemporaryFolder folder;
+    const auto file = folder.write("broken.png", "not a picture");
     try {
         read_image(file);
         ADD_FAILURE() << "read";
     } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
     }
-    std::filesystem::remove(file);
 }
 
 TEST(DrawText, WritesIntoThePictureAndNowhereElse)

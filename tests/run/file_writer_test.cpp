@@ -1,6 +1,7 @@
 #include "apps/run/file_writer.h"
 
 #include "apps/run/sha256.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -14,19 +15,13 @@ namespace {
 
 class FileWriterTest : public ::testing::Test {
 protected:
-    FileWriterTest()
-        : folder_(std::filesystem::temp_directory_path() / ("patchlight-writer-" + std::to_string(::getpid())))
-    {
-        std::filesystem::create_directories(folder_);
-    }
-    ~FileWriterTest() override { std::filesystem::remove_all(folder_); }
-
     std::size_t entries() const
     {
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
 
-    std::filesystem::path folder_;
+    const testing::TemporaryFolder temporary_;
+    const std::filesystem::path& folder_ = temporary_.path();
     FileWriter writer_;
 };
 
