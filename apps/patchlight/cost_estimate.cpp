@@ -47,10 +47,10 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     const double elements = elements_of(scene, options);
     CostEstimate cost;
     cost.elements = static_cast<std::size_t>(std::min(elements, 1e18));
-    // Cycles grow geometrically: together about three times the last one; half as many vertices as elements, and three
-    // edges for two of them.
-    const double middles = options.elements == Elements::quadratic ? 1.5 * elements : 0;
-    cost.rays = 3 * elements * (options.form_factors.rays + 0.5 * options.gather.rays) + middles * options.gather.rays;
+    // Rays are traced for the patches of the uniform mesh, and from the vertices where indirect light is gathered: a
+    // quarter of the elements.
+    const double vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
+    cost.rays = 0.25 * elements * (options.form_factors.rays + vertex_rays + 6 * options.estimate.rays);
     cost.bytes =
         matrix_bytes(options.form_factors.method, cost.elements, options.form_factors) + elements * bytes_per_element;
     return cost;

@@ -63,6 +63,12 @@ void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--indicator", t.indicator, "what is taken for the error of a patch")
         ->check(CLI::IsMember(words(indicator_names())))
         ->capture_default_str();
+    app.add_option("--local", o.mark.local,
+                   "of what counts as a patch's error, the part that is relative to its own light instead of the whole "
+                   "scene's: more elements in dark places")
+        ->check(number_between(0, 1))
+        ->type_name("SHARE")
+        ->capture_default_str();
     app.add_option("--marking", t.marking, "how patches to refine are chosen")
         ->check(CLI::IsMember(words(marking_names())))
         ->capture_default_str();
@@ -110,8 +116,10 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
         ->check(whole_between(16, 65536))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--vertex-rays", o.gather.rays, "rays per vertex of the final gathering")
-        ->check(whole_between(16, 65536))
+    app.add_option("--vertex-rays", o.gather.rays,
+                   "rays per vertex where indirect light is gathered; 0: as many as the error asks for, 512 with "
+                   "--refine none")
+        ->check(whole_between(0, 65536))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--crease-angle", o.gather.crease_angle,
