@@ -105,6 +105,7 @@ struct ValidateCommand {
 struct VerifyCommand {
     std::string run;
     WhichCycle cycle;
+    bool all_cycles = false;  ///< the others beside the last
     std::size_t points = 2000;
     std::uint32_t most_paths = 4096;  ///< from each point
     std::uint64_t seed = 1;

@@ -357,7 +357,7 @@ struct Parser {
             return exported;
         }
         if (app.got_subcommand("verify")) {
-            verify.cycle = cycle_in("--cycle", verify_cycle);
+            finish_verify(verify, verify_cycle);
             return verify;
         }
         if (app.got_subcommand("formfactors")) {

@@ -16,7 +16,9 @@ void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
         ->check(whole_between(8, 100'000'000))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--cycle", cycle, "which cycle: a number, first or last")->type_name("N")->capture_default_str();
+    app.add_option("--cycle", cycle, "which cycle: a number, first, last, or all by the same paths")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_option("--seed", c.seed, "of all random numbers")
         ->check(whole_between(0, 9'000'000'000'000'000'000))
         ->type_name("N")
@@ -26,6 +28,12 @@ void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
                "95 %; the paths' own noise is not counted as error. L2 is relative to the reflected light of all\n"
                "surface; RMS to that of each point, where it is at least a thousandth of the mean.\n"
                "The estimate holds when it is between half the measured error and three times it.");
+}
+
+void finish_verify(VerifyCommand& c, const std::string& cycle)
+{
+    c.all_cycles = cycle == "all";
+    if (!c.all_cycles) c.cycle = cycle_in("--cycle", cycle);
 }
 
 }  // namespace patchlight

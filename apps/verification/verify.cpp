@@ -24,19 +24,20 @@ std::size_t trace(const PathTracer& tracer, const std::vector<DrawnPoint>& point
     return for_each_row<PathTracer::Scratch>(points.size(), monitor, work, 4);
 }
 
-/// Mean and variance of the mean of the streams.
-void conclude(const std::vector<Sums>& sums, std::uint32_t paths, std::vector<MeasuredPoint>& points)
+struct Found {
+    Rgb mean{0.0}, variance{0.0};
+};
+
+/// Mean and variance of the mean of a point's streams.
+Found found_by(const Sums& sums, std::uint32_t paths)
 {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        Rgb mean(0.0), squares(0.0);
-        for (const Rgb& sum : sums[i]) mean += sum / static_cast<double>(paths * streams);
-        for (const Rgb& sum : sums[i]) {
-            const Rgb d = sum / static_cast<double>(paths) - mean;
-            squares += d * d;
-        }
-        points[i].found = mean;
-        points[i].variance = squares / static_cast<double>(streams * (streams - 1));
+    Found found;
+    for (const Rgb& sum : sums) found.mean += sum / static_cast<double>(paths * streams);
+    for (const Rgb& sum : sums) {
+        const Rgb d = sum / static_cast<double>(paths) - found.mean;
+        found.variance += d * d / static_cast<double>(streams * (streams - 1));
     }
+    return found;
 }
 
 bool well_known(const MeasuredError& error)
@@ -45,20 +46,54 @@ bool well_known(const MeasuredError& error)
     return half <= 0.1 * error.l2 || error.from_paths < 0.1;
 }
 
+/// Whether all are.
+bool measure(const std::vector<Sums>& sums, std::uint32_t paths, std::uint64_t seed,
+             std::vector<VerifiedSolution>& solutions)
+{
+    bool enough = true;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const Found found = found_by(sums[i], paths);
+        for (VerifiedSolution& solution : solutions) {
+            solution.points[i].found = found.mean;
+            solution.points[i].variance = found.variance;
+        }
+    }
+    for (VerifiedSolution& solution : solutions) {
+        solution.error = measured_error(solution.points, seed);
+        enough = enough && well_known(solution.error);
+    }
+    return enough;
+}
+
+VerifiedSolution unmeasured(const std::vector<DrawnPoint>& points, const std::vector<ShownPoint>& shown)
+{
+    VerifiedSolution solution;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        solution.points.push_back({points[i].surface, shown[i].reflected, shown[i].estimated, Rgb(0.0), Rgb(0.0)});
+    return solution;
+}
+
+constexpr std::uint64_t for_points = 0, for_paths = 1, for_intervals = 2;
+
+std::uint64_t seed_of(const VerifyOptions& options, std::uint64_t purpose)
+{
+    return RandomNumbers(options.seed, purpose).bits();
+}
+
 }  // namespace
 
-Verification verify_light(const Scene& scene, const RayCaster& caster, const ShownLight& shown,
-                          const VerifyOptions& options, const WorkMonitor& monitor)
+std::vector<DrawnPoint> points_to_verify(const Scene& scene, const VerifyOptions& options)
 {
-    RandomNumbers seeds(options.seed, 0);
-    const std::uint64_t for_points = seeds.bits(), for_paths = seeds.bits(), for_intervals = seeds.bits();
-    const std::vector<DrawnPoint> points = draw_points(reflecting_surface(scene), options.points, for_points);
+    return draw_points(reflecting_surface(scene), options.points, seed_of(options, for_points));
+}
+
+Verification verify_light(const Scene& scene, const RayCaster& caster, const std::vector<DrawnPoint>& points,
+                          const std::vector<std::vector<ShownPoint>>& solutions, const VerifyOptions& options,
+                          const WorkMonitor& monitor)
+{
     Verification result;
-    for (const DrawnPoint& point : points) {
-        const ShownPoint seen = shown(point);
-        result.points.push_back({point.surface, seen.reflected, seen.estimated, Rgb(0.0), Rgb(0.0)});
-    }
-    const PathTracer tracer(scene, caster, for_paths, options.emitters);
+    for (const auto& shown : solutions) result.solutions.push_back(unmeasured(points, shown));
+    const PathTracer tracer(scene, caster, seed_of(options, for_paths), options.emitters);
     const std::uint32_t most = std::max(1U, (options.most_paths + streams - 1) / streams);
     std::vector<Sums> sums(points.size());
     for (Sums& of_point : sums) of_point.fill(Rgb(0.0));
@@ -72,9 +107,7 @@ Verification verify_light(const Scene& scene, const RayCaster& caster, const Sho
         result.rays += trace(tracer, points, done, next - done, round, sums);
         done = next;
         result.paths = done * streams;
-        conclude(sums, done, result.points);
-        result.error = measured_error(result.points, for_intervals);
-        if (well_known(result.error)) break;
+        if (measure(sums, done, seed_of(options, for_intervals), result.solutions)) break;
     }
     return result;
 }

@@ -4,7 +4,6 @@
 #include "apps/verification/path_tracer.h"
 #include "formfactor/work_monitor.h"
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -17,26 +16,34 @@ struct VerifyOptions {
     std::optional<FindEmitters> emitters;  ///< unset: as PathTracer chooses
 };
 
+/// The points that the options ask for; none where nothing reflects.
+std::vector<DrawnPoint> points_to_verify(const Scene& scene, const VerifyOptions& options);
+
 /// What a solution shows at a point.
 struct ShownPoint {
     Rgb reflected{0.0};    ///< B − E, W/m²
     double estimated = 0;  ///< its own estimate of its error there, W/m²
 };
-using ShownLight = std::function<ShownPoint(const DrawnPoint&)>;
 
-struct Verification {
+/// A solution beside the light that was found.
+struct VerifiedSolution {
     std::vector<MeasuredPoint> points;
     MeasuredError error;
+};
+
+struct Verification {
+    std::vector<VerifiedSolution> solutions;
     std::uint32_t paths = 0;  ///< from each point
     std::size_t rays = 0;
 };
 
-/// Measures the error of a solution by paths from area-uniform points of all reflecting surface. Paths are doubled,
-/// from 128 a point, until the interval of l2 is within a tenth of l2 on both sides, or owes less than a tenth of
-/// its variance to the paths' noise, or there are most_paths. The answer depends on the scene, what is shown, the
-/// points, most_paths and the seed: not on threads or time. No reflecting surface or no emitter: no error. `shown` is
-/// called from one thread. Throws Interrupted.
-Verification verify_light(const Scene& scene, const RayCaster& caster, const ShownLight& shown,
-                          const VerifyOptions& options, const WorkMonitor& monitor = {});
+/// Measures the errors of solutions (what each shows at each of the points) by the same paths from the points. Paths
+/// are doubled, from 128 a point, until each interval of l2 is within a tenth of l2 on both sides, or owes less than a
+/// tenth of its variance to the paths' noise, or there are most_paths. The answer depends on the scene, the points,
+/// what is shown there, most_paths and the seed: not on threads or time. No point or no emitter: no error. Throws
+/// Interrupted.
+Verification verify_light(const Scene& scene, const RayCaster& caster, const std::vector<DrawnPoint>& points,
+                          const std::vector<std::vector<ShownPoint>>& solutions, const VerifyOptions& options,
+                          const WorkMonitor& monitor = {});
 
 }  // namespace patchlight

@@ -61,7 +61,7 @@ TEST_F(VerifyTest, ReportsTheErrorWithItsIntervalAndAVerdict)
 
     const Outcome text = run({"verify", path("run"), "--points", "50", "--paths", "64"});
     EXPECT_EQ(text.code, 0);
-    EXPECT_THAT(text.out, AllOf(HasSubstr("relative L2 error"), HasSubstr("estimated"), HasSubstr("floor")));
+    EXPECT_THAT(text.out, AllOf(HasSubstr("relative L2"), HasSubstr("estimate"), HasSubstr("floor")));
     EXPECT_THAT(text.err, HasSubstr("M rays in"));
 }
 
@@ -69,19 +69,33 @@ TEST_F(VerifyTest, ReportsTheErrorWithItsIntervalAndAVerdict)
 TEST_F(VerifyTest, MeasuresAPerturbationOfWhatIsStored)
 {
     solve(PATCHLIGHT_DATA "/scenes/furnace.obj");
-    const json exact = verified({"--points", "500"});
+    const json exact = verified({"--points", "500", "--paths", "1024"});
     EXPECT_LT(exact.at("l2_ci").at(0), 2e-3) << "the solver's tolerance is 1e-4";
     const std::filesystem::path file = path("run/solution.glb");
     StoredSolution s = read_solution(file);
     const Rgb E = s.scene.materials.front().emission;
     for (Rgb& B : s.vertex_B.values()) B = E + 1.02 * (B - E);
     write_text(file, encode_solution(s.scene, s.mesh, s.B, s.vertex_B, s.eta, s.edge));
-    const json off = verified({"--points", "500"});
+    const json off = verified({"--points", "500", "--paths", "1024"});
     // The interval, and the solver's own error.
     EXPECT_LT(off.at("l2_ci").at(0), 0.021);
     EXPECT_GT(off.at("l2_ci").at(1), 0.019);
     EXPECT_NEAR(off.at("l2").get<double>(), 0.02, 0.005);
     EXPECT_EQ(off.at("verdict"), "too small") << "the stored estimate knows nothing of it";
+}
+
+TEST_F(VerifyTest, AllCyclesAreMeasuredAsEachAloneWouldBe)
+{
+    solve(write_scene());
+    const json all = verified({"--points", "300", "--paths", "128", "--cycle", "all"});
+    const json record = json::parse(text_of(path("run/run.json")));
+    ASSERT_EQ(all.at("cycles").size(), record.at("cycles").size());
+    EXPECT_EQ(all.at("l2"), all.at("cycles").back().at("l2"));
+    const json first = verified({"--points", "300", "--paths", "128", "--cycle", "0"});
+    for (const char* key : {"l2", "l2_ci", "relrms", "estimated_error", "verdict", "within_twice_the_estimate"})
+        EXPECT_EQ(all.at("cycles").at(0).at(key), first.at(key)) << key;
+    EXPECT_GT(first.at("l2"), all.at("l2")) << "refined for something";
+    EXPECT_THAT(run({"verify", path("run"), "--points", "50", "--cycle", "all"}).out, HasSubstr("measured"));
 }
 
 TEST_F(VerifyTest, PrintsTheSameOnAnyNumberOfThreadsButForTheTime)

@@ -72,13 +72,13 @@ def main():
         spent, reached, paths = path_tracer(arguments.command, Path(folder) / f"{arguments.targets[-1]}-1", len(rows),
                                             arguments.paths)
     print("| --target-error | CPU s | limit | relative L2 | relative RMS | elements | estimated |"
-          " path tracer to that RMS, CPU s | of it |")
+          " path tracer to that RMS, CPU s | ratio |")
     print("|---:|---:|---:|---:|---:|---:|---:|---:|---:|")
     for target, (seconds, l2, rms, elements, estimated), met in table:
         limit = f"{LIMITS[target]:g}" if target in LIMITS else "–"
         traced = spent * (reached / rms) ** 2 if rms > 0 else float("inf")
         print(f"| {100 * target:g} % | {seconds:.2f} | {limit} | {100 * l2:.2f} % | {100 * rms:.2f} % | {elements:,.0f} |"
-              f" {100 * estimated:.2f} %{'' if met else ' (not met)'} | {traced:.1f} | {seconds / traced:.1%} |")
+              f" {100 * estimated:.2f} %{'' if met else ' (not met)'} | {traced:.1f} | {traced / seconds:.1f} |")
     print(f"\nPath tracer: {spent:.2f} CPU s for {paths} paths from each of {len(rows):,} points, relative RMS of their"
           f" standard errors {100 * reached:.2f} %; other times by 1/√n.")
 

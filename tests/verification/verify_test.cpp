@@ -14,24 +14,35 @@ Scene furnace()
     return read_scene(PATCHLIGHT_DATA "/scenes/furnace.obj").scene;
 }
 
-/// B − E of the furnace, times a factor.
-ShownLight furnace_light(const Scene& scene, double factor)
+/// Verifies a solution that shows the same everywhere.
+struct Verified : VerifiedSolution {
+    std::uint32_t paths = 0;
+    std::size_t rays = 0;
+};
+
+Verified verify(const Scene& scene, const Rgb& shown, const VerifyOptions& options = {},
+                const WorkMonitor& monitor = {})
+{
+    const auto points = points_to_verify(scene, options);
+    const std::vector<ShownPoint> everywhere(points.size(), ShownPoint{shown, 0.01});
+    const Verification v = verify_light(scene, RayCaster(scene), points, {everywhere}, options, monitor);
+    return {v.solutions.front(), v.paths, v.rays};
+}
+
+/// B − E of the furnace.
+Rgb furnace_light(const Scene& scene)
 {
     const Material& m = scene.materials.front();
-    return [B = factor * m.reflectance * m.emission / (1.0 - m.reflectance)](const DrawnPoint&) -> ShownPoint {
-        return {B, 0.01};
-    };
+    return m.reflectance * m.emission / (1.0 - m.reflectance);
 }
 
 TEST(Verify, MeasuresAKnownPerturbationOfTheFurnace)
 {
     const Scene scene = furnace();
-    const RayCaster caster(scene);
     int held = 0;
     constexpr int runs = 10;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        const MeasuredError error =
-            verify_light(scene, caster, furnace_light(scene, 1.02), {300, 1024, seed, {}}).error;
+        const MeasuredError error = verify(scene, 1.02 * furnace_light(scene), {300, 1024, seed, {}}).error;
         held += error.l2_ci.low <= 0.02 && 0.02 <= error.l2_ci.high ? 1 : 0;
         // A path's standard deviation is √ρ of the value: 2.6 % a point, squared and halved by 300 points to 5e-5 of
         // .02².
@@ -43,8 +54,7 @@ TEST(Verify, MeasuresAKnownPerturbationOfTheFurnace)
 TEST(Verify, AnExactSolutionHasNoError)
 {
     const Scene scene = furnace();
-    const RayCaster caster(scene);
-    const Verification exact = verify_light(scene, caster, furnace_light(scene, 1), {500, 1024, 7, {}});
+    const Verified exact = verify(scene, furnace_light(scene), {500, 1024, 7, {}});
     EXPECT_EQ(exact.error.l2_ci.low, 0);
     EXPECT_LT(exact.error.l2_ci.high, 0.5 * exact.error.l2_noise) << "the noise is not counted as error";
     EXPECT_EQ(exact.paths, 1024U) << "no error is known well enough: all paths are used";
@@ -54,8 +64,7 @@ TEST(Verify, AnExactSolutionHasNoError)
 TEST(Verify, TakesFewPathsWhereTheErrorIsLarge)
 {
     const Scene scene = furnace();
-    const RayCaster caster(scene);
-    const Verification wrong = verify_light(scene, caster, furnace_light(scene, 2), {500, 4096, 7, {}});
+    const Verified wrong = verify(scene, 2.0 * furnace_light(scene), {500, 4096, 7, {}});
     EXPECT_EQ(wrong.paths, 128U);
     EXPECT_NEAR(wrong.error.l2, 1, 0.05);
 }
@@ -63,13 +72,11 @@ TEST(Verify, TakesFewPathsWhereTheErrorIsLarge)
 TEST(Verify, IsTheSameOnAnyNumberOfThreads)
 {
     const Scene scene = testing::load(testing::room_with_lamp()).scene;
-    const RayCaster caster(scene);
-    const ShownLight nothing = [](const DrawnPoint&) { return ShownPoint{Rgb(1.0), 0}; };
     const auto found = [&](std::size_t threads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        return verify_light(scene, caster, nothing, {200, 256, 3, {}});
+        return verify(scene, Rgb(1.0), {200, 256, 3, {}});
     };
-    const Verification one = found(1), many = found(4);
+    const Verified one = found(1), many = found(4);
     EXPECT_EQ(one.error.l2, many.error.l2);
     EXPECT_EQ(one.error.l2_ci.low, many.error.l2_ci.low);
     EXPECT_EQ(one.rays, many.rays);
@@ -83,22 +90,36 @@ TEST(Verify, WithoutLightOrReflectionThereIsNoError)
 {
     SceneOptions options;
     options.require_emitter = false;
-    const ShownLight nothing = [](const DrawnPoint&) { return ShownPoint{}; };
     const Scene dark = testing::load(testing::box({0, 0, 0}, {1, 1, 1}, true), options).scene;
-    EXPECT_EQ(verify_light(dark, RayCaster(dark), nothing, {}).error.l2, 0);
+    EXPECT_EQ(verify(dark, Rgb(0.0)).error.l2, 0);
     const Scene black = testing::read_text(testing::obj_text(testing::box({0, 0, 0}, {1, 1, 1}, true, "lamp"))).scene;
-    const Verification none = verify_light(black, RayCaster(black), nothing, {});
+    const Verified none = verify(black, Rgb(0.0));
     EXPECT_EQ(none.error.l2, 0);
     EXPECT_TRUE(none.points.empty());
+}
+
+TEST(Verify, SeveralSolutionsAreHeldToTheSamePaths)
+{
+    const Scene scene = furnace();
+    const VerifyOptions options{300, 512, 1, {}};
+    const auto points = points_to_verify(scene, options);
+    const auto shows = [&](double factor) {
+        return std::vector<ShownPoint>(points.size(), ShownPoint{factor * furnace_light(scene), 0});
+    };
+    const Verification v = verify_light(scene, RayCaster(scene), points, {shows(2), shows(1)}, options);
+    ASSERT_EQ(v.solutions.size(), 2U);
+    EXPECT_EQ(v.paths, 512U) << "the one without error still needs them";
+    EXPECT_NEAR(v.solutions[0].error.l2, 1, 0.02);
+    EXPECT_LT(v.solutions[1].error.l2, 0.03);
+    EXPECT_EQ(v.solutions[0].points[7].found, v.solutions[1].points[7].found);
 }
 
 TEST(Verify, CanBeInterrupted)
 {
     const Scene scene = furnace();
-    const RayCaster caster(scene);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(verify_light(scene, caster, furnace_light(scene, 1), {}, {stop.get_token(), {}}), Interrupted);
+    EXPECT_THROW(verify(scene, furnace_light(scene), {}, {stop.get_token(), {}}), Interrupted);
 }
 
 }  // namespace
