@@ -9,7 +9,7 @@ void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
 {
     app.add_option("run", c.run, "folder of a run")->required()->type_name("RUN");
     app.add_option("--points", c.points, "at random over all surface that reflects")
-        ->check(whole_between(1, 10'000'000))
+        ->check(whole_between(1, 1'000'000))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--paths", c.most_paths, "from each point at most; fewer where the error is known well enough")

@@ -155,7 +155,7 @@ PointShares shares_within(std::span<const MeasuredPoint> points,
     const double one = 1 / static_cast<double>(points.size());
     for (const MeasuredPoint& p : points) {
         const double most = limit(p), error = glm::length(p.shown - p.found);
-        const double doubt = 2 * std::sqrt(sum_of(p.variance));
+        const double doubt = 3 * std::sqrt(sum_of(p.variance));
         (error + doubt <= most ? shares.within : error - doubt > most ? shares.beyond : shares.undecided) += one;
     }
     return shares;

@@ -53,7 +53,8 @@ struct SurfaceError {
 /// In the order of the surfaces; those without a point are left out.
 std::vector<SurfaceError> errors_by_surface(std::span<const MeasuredPoint> points);
 
-/// Shares of the points, which sum to 1. A point is decided where it is two standard errors from the limit.
+/// Shares of the points, which sum to 1. A point is decided where it is three standard errors from the limit: of points
+/// far within it, whose noise is larger than the limit, one or two in a hundred are still called beyond.
 struct PointShares {
     double within = 0, beyond = 0, undecided = 0;
 };
