@@ -78,7 +78,7 @@ def main():
         limit = f"{LIMITS[target]:g}" if target in LIMITS else "–"
         traced = spent * (reached / rms) ** 2 if rms > 0 else float("inf")
         print(f"| {100 * target:g} % | {seconds:.2f} | {limit} | {100 * l2:.2f} % | {100 * rms:.2f} % | {elements:,.0f} |"
-              f" {100 * estimated:.2f} %{'' if met else ' (not met)'} | {traced:.1f} | {traced / seconds:.1f} |")
+              f" {100 * estimated:.2f} %{'' if met else ' (not met)'} | {traced:.2f} | {traced / seconds:.2f} |")
     print(f"\nPath tracer: {spent:.2f} CPU s for {paths} paths from each of {len(rows):,} points, relative RMS of their"
           f" standard errors {100 * reached:.2f} %; other times by 1/√n.")
 
