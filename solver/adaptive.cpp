@@ -128,14 +128,16 @@ private:
         // Shooting computes columns on demand; the tight solve assembles all the same, for the energy balance.
         const bool rows = !shooting || &options == &options_.final;
         RadiositySystem system = stage("assemble", seconds.assemble, [&](const WorkMonitor& monitor) {
-            return rows ? assemble(exchange_, sampling, monitor) : unassembled(exchange_);
+            RadiositySystem made = rows ? assemble(exchange_, sampling, monitor) : unassembled(exchange_);
+            if (options.solver == Solver::conjugate_gradient) make_reciprocal(made, exchange_.scene.closed);
+            return made;
         });
         Solved solved;
         const Radiosity emission = system.E;
         if (exchange_.direct) take_direct_light(system, B);
         solved.report = stage("solve", seconds.solve, [&](const WorkMonitor& monitor) {
-            return shooting ? shoot(exchange_, system, B, options, sampling, monitor)
-                            : solve_gathering(system, B, options, monitor);
+            return rows ? patchlight::solve(system, B, options, monitor)
+                        : shoot(exchange_, system, B, options, sampling, monitor);
         });
         if (exchange_.direct) {
             add(emission, B);
