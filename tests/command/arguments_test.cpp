@@ -48,8 +48,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"report", "a", "-o", "b"}, std::vector<std::string>{"study", "run", "a"},
                       solving({"--refine", "quadratic"}), solving({"--solver", "hierarchical"}),
                       solving({"--form-factors", "monte-carlo"}), solving({"--form-factors", "closed-form"}),
-                      solving({"--form-factors", "exact", "--solver", "progressive"}), solving({"--resolution", "127"}),
-                      solving({"--mesh", "a"}), std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
+                      solving({"--overshoot"}), solving({"--resolution", "127"}), solving({"--mesh", "a"}),
+                      std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, RefusedArguments,
@@ -65,9 +65,10 @@ INSTANTIATE_TEST_SUITE_P(
                       solving({"--emitter", "lamp"}), solving({"--emitter", "lamp=-1"}),
                       solving({"--emitter", "lamp=1,2"}), solving({"--emitter", "lamp=nan"}),
                       solving({"--emitter", "lamp=1", "--emitter", "lamp=2"}), solving({"--unit", "parsec"}),
-                      solving({"--max-reflectance", "1"}), solving({"--seed", "-1"}),
-                      solving({"--crease-angle", "181"}), solving({"--marking", "all"}), solving({"--direct", "none"}),
-                      solving({"--direct", "exactly"}), solving({"--refine", "lines"}), solving({"--refine", ""}),
+                      solving({"--max-reflectance", "1"}), solving({"--seed", "-1"}), solving({"--memory", "8"}),
+                      solving({"--memory", "-1GB"}), solving({"--memory", "0MiB"}), solving({"--crease-angle", "181"}),
+                      solving({"--marking", "all"}), solving({"--direct", "none"}), solving({"--direct", "exactly"}),
+                      solving({"--refine", "lines"}), solving({"--refine", ""}),
                       std::vector<std::string>{"render", "run", "-o", "a.jpg"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--from", "1,2,3"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--from", "1,2,3", "--to", "1,2,3"},
