@@ -11,15 +11,23 @@ namespace patchlight {
 
 Rgb gathered(const FormFactorMatrix& F, const Radiosity& B, std::size_t row)
 {
+    constexpr std::size_t ahead = 256;
     const Rgb* const light = B.values().data();
     const std::uint32_t* const columns = F.columns.data();
     const double* const factors = F.factors.data();
     const std::size_t end = F.row_start[row + 1];
     std::size_t k = F.row_start[row];
-    // Four sums: in one, every addition would wait for the one before, and memory for both.
+    // Four sums: in one, every addition would wait for the one before. What is read once is fetched two kilobytes
+    // ahead, past the caches that hold the light; the rows follow each other.
     std::array<Rgb, 4> sums{Rgb(0.0), Rgb(0.0), Rgb(0.0), Rgb(0.0)};
-    for (; k + 4 <= end; k += 4)
-        for (std::size_t lane = 0; lane < 4; ++lane) sums[lane] += factors[k + lane] * light[columns[k + lane]];
+    for (; k + 16 <= end; k += 16) {
+        __builtin_prefetch(factors + k + ahead, 0, 0);
+        __builtin_prefetch(factors + k + ahead + 8, 0, 0);
+        __builtin_prefetch(columns + k + ahead, 0, 0);
+        for (std::size_t step = k; step < k + 16; step += 4)
+            for (std::size_t lane = 0; lane < 4; ++lane)
+                sums[lane] += factors[step + lane] * light[columns[step + lane]];
+    }
     for (; k < end; ++k) sums[0] += factors[k] * light[columns[k]];
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace patchlight {
 
@@ -34,8 +35,14 @@ double ReflectedSystem::bound(const Radiosity& r, const Radiosity& B) const
         left += system_.area[PatchId(i)] * glm::abs(r[PatchId(i)]);
         total += system_.area[PatchId(i)] * B[PatchId(i)];
     }
-    const Rgb relative = quotient(left / (1.0 - rho_max_), total);
-    return std::max({relative.r, relative.g, relative.b});
+    double worst = 0;
+    for (int band = 0; band < 3; ++band) {
+        if (left[band] == 0) continue;
+        // Started from darkness, there is nothing yet to compare with.
+        worst = std::max(worst, total[band] > 0 ? left[band] / (1 - rho_max_[band]) / total[band]
+                                                : std::numeric_limits<double>::infinity());
+    }
+    return worst;
 }
 
 void ReflectedSystem::settle_black(Radiosity& B) const

@@ -150,6 +150,22 @@ TEST(Arguments, RefinementAndDirectLightCanBeChosen)
     EXPECT_EQ(options({"--direct", "sampled"}).direct, Direct::sampled);
 }
 
+TEST(Arguments, SolversAndMemoryArrive)
+{
+    const auto command = [](std::vector<std::string> words) {
+        return std::get<SolveCommand>(parse(solving(std::move(words))));
+    };
+    EXPECT_EQ(command({}).options.final.solver, Solver::gauss_seidel);
+    EXPECT_EQ(command({"--solver", "conjugate-gradient"}).options.final.solver, Solver::conjugate_gradient);
+    EXPECT_EQ(command({"--solver", "bicgstab"}).options.final.solver, Solver::bicgstab);
+    EXPECT_TRUE(command({"--solver", "progressive", "--overshoot"}).options.final.overshoot);
+    EXPECT_EQ(command({"--solver", "progressive", "--form-factors", "exact"}).options.final.tolerance, 0.01);
+    EXPECT_EQ(command({}).memory, 0) << "what the machine has";
+    EXPECT_EQ(command({"--memory", "4G"}).memory, 0x1p32);
+    EXPECT_EQ(command({"--memory", "512MiB"}).memory, 0x1p29);
+    EXPECT_EQ(command({"--memory", "1.5GB"}).memory, 1.5e9);
+}
+
 TEST(Arguments, FormFactorsBetweenObjectsAndOfAllPatchesHaveTheirOwnDefaults)
 {
     const auto pair = std::get<FormFactorsCommand>(parse(factors({"--between", "-a", "b c", "--seed", "9"})));

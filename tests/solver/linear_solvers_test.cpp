@@ -191,6 +191,9 @@ TEST(LinearSolvers, StartWhereTheyAreTold)
         EXPECT_LT(solve(system, warm, options).iterations, solve(system, cold, options).iterations);
         solve(system, wrong, tight(solver));
         EXPECT_LT(relative_error(system, exact, wrong), 1e-6) << static_cast<int>(solver);
+        Radiosity dark(exact.size(), Rgb(0.0));
+        solve(system, dark, tight(solver));
+        EXPECT_LT(relative_error(system, exact, dark), 1e-6) << static_cast<int>(solver);
     }
 }
 
