@@ -1,12 +1,13 @@
 // How near sweeps over the rows come to the machine's read bandwidth: bytes of columns and factors a second (12 B an
-// entry, once for all three bands) beside a plain sum over memory, in turn in one run, the best of several.
-// Usage: sweeps [patches of the full matrix] [patches of the sparse one] [entries a row there] [rounds]
+// entry, once for all three bands) beside a plain sum over memory, in turn in one run, the best of several. On cores
+// that are shared, `nice -n -15` gives it both of them. Usage: sweeps [patches of the full matrix] [patches of the
+// sparse one] [entries a row there] [rounds]
 #include "formfactor/random_numbers.h"
 #include "solver/solve.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <numeric>
 #include <string>
@@ -17,13 +18,11 @@
 namespace patchlight {
 namespace {
 
-/// CPU seconds over threads: the wall's, when no other program wants the cores.
 double seconds_of(const std::function<void()>& work)
 {
-    const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
-    const double begin = now();
+    const auto begin = std::chrono::steady_clock::now();
     work();
-    return (now() - begin) / std::thread::hardware_concurrency();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 /// Reads all of it once on all threads, in eight sums a thread, as fast as it will go.
