@@ -51,6 +51,9 @@ FormFactorAudit audit(const FormFactorMatrix& matrix, const PatchField<double>& 
 /// Puts the columns of every row in ascending order.
 void sort_columns(FormFactorMatrix& matrix);
 
+/// Fᵀ: factors only, columns ascending.
+FormFactorMatrix transposed(const FormFactorMatrix& matrix);
+
 /// What a repair did.
 struct RepairReport {
     ClosureDefect closure_before, closure_after;

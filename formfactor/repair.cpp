@@ -7,6 +7,25 @@
 
 namespace patchlight {
 
+FormFactorMatrix transposed(const FormFactorMatrix& matrix)
+{
+    FormFactorMatrix result;
+    result.row_start.assign(matrix.row_start.size(), 0);
+    for (const std::uint32_t column : matrix.columns) ++result.row_start[column + 1];
+    for (std::size_t i = 1; i < result.row_start.size(); ++i) result.row_start[i] += result.row_start[i - 1];
+    result.columns.resize(matrix.columns.size());
+    result.factors.resize(matrix.factors.size());
+    std::vector<std::size_t> next(result.row_start.begin(), result.row_start.end());
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        for (std::size_t k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) {
+            const std::size_t to = next[matrix.columns[k]]++;
+            result.columns[to] = static_cast<std::uint32_t>(i);
+            result.factors[to] = matrix.factors[k];
+        }
+    }
+    return result;
+}
+
 namespace {
 
 constexpr double row_tolerance = 1e-12;
@@ -31,25 +50,6 @@ FormFactorMatrix exchanges(const FormFactorMatrix& matrix, const PatchField<doub
     for (std::size_t i = 0; i < result.size(); ++i)
         for (std::size_t k = result.row_start[i]; k < result.row_start[i + 1]; ++k)
             result.factors[k] *= areas[PatchId(i)];
-    return result;
-}
-
-FormFactorMatrix transposed(const FormFactorMatrix& matrix)
-{
-    FormFactorMatrix result;
-    result.row_start.assign(matrix.row_start.size(), 0);
-    for (const std::uint32_t column : matrix.columns) ++result.row_start[column + 1];
-    for (std::size_t i = 1; i < result.row_start.size(); ++i) result.row_start[i] += result.row_start[i - 1];
-    result.columns.resize(matrix.columns.size());
-    result.factors.resize(matrix.factors.size());
-    std::vector<std::size_t> next(result.row_start.begin(), result.row_start.end());
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
-        for (std::size_t k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) {
-            const std::size_t to = next[matrix.columns[k]]++;
-            result.columns[to] = static_cast<std::uint32_t>(i);
-            result.factors[to] = matrix.factors[k];
-        }
-    }
     return result;
 }
 

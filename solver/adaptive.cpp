@@ -94,17 +94,6 @@ struct PatchSolution {
     std::size_t rays = 0;
 };
 
-SolveReport shoot(const Exchange& exchange, const RadiositySystem& system, Radiosity& B, const AdaptiveOptions& options,
-                  const WorkMonitor& monitor)
-{
-    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
-                             options.form_factors);
-    const ColumnSource column_of = [&](PatchId shooter, std::span<double> column) {
-        return sampler.shooter_column(shooter, column, {monitor.stop, {}});
-    };
-    return solve_shooting(system, column_of, B, options.final, monitor);
-}
-
 /// Solves (I − diag(ρ)F)B = E with all bounces. Where the emitters' light is known exactly, for the reflected part:
 /// R = ρ H_direct + ρ F R.
 PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& options, Stages& stages)
@@ -112,7 +101,9 @@ PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& opt
     PatchSolution solution;
     const std::size_t n = exchange.mesh.patch_count();
     solution.system = stages.run("assemble", &StageSeconds::assemble, n, [&](const WorkMonitor& monitor) {
-        return assemble(exchange, options.form_factors, monitor);
+        RadiositySystem made = assemble(exchange, options.form_factors, monitor);
+        if (options.final.solver == Solver::conjugate_gradient) make_reciprocal(made, exchange.scene.closed);
+        return made;
     });
     RadiositySystem& system = solution.system;
     const Radiosity emission = system.E;
@@ -124,9 +115,7 @@ PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& opt
             system.E[p] = system.rho[p] * system.direct[p];
         }
     solution.report = stages.run("solve", &StageSeconds::solve, n, [&](const WorkMonitor& monitor) {
-        return options.final.solver == Solver::progressive
-                   ? shoot(exchange, system, solution.B, options, monitor)
-                   : solve_gathering(system, solution.B, options.final, monitor);
+        return solve(system, solution.B, options.final, monitor);
     });
     if (exchange.direct) {
         system.E = emission;

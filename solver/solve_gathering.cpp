@@ -2,28 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tbb/parallel_for.h>
 
 namespace patchlight {
 
 namespace {
 
-Rgb gathered(const RadiositySystem& system, const Radiosity& B, std::size_t i)
+constexpr std::size_t most_blocks = 64;
+/// Entries of a block below which threads cost more than they bring.
+constexpr std::size_t worth_threads = 50'000;
+
+/// What a sweep changed, and what there is: Σ A|ΔB| and Σ A B.
+struct Sweep {
+    Rgb change{0.0}, total{0.0};
+};
+
+/// Gathers patches [first, last) from B as it is, then puts the new values into it.
+void gather_block(const RadiositySystem& system, Radiosity& B, std::size_t first, std::size_t last,
+                  std::vector<Rgb>& fresh, Sweep& sweep)
 {
-    const FormFactorMatrix& F = system.F;
-    Rgb sum(0.0);
-    for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k) sum += F.factors[k] * B[PatchId(F.columns[k])];
-    return system.E[PatchId(i)] + system.rho[PatchId(i)] * sum;
+    const auto gather = [&](std::size_t i) {
+        fresh[i - first] = system.E[PatchId(i)] + system.rho[PatchId(i)] * gathered(system.F, B, i);
+    };
+    if (system.F.row_start[last] - system.F.row_start[first] >= worth_threads)
+        tbb::parallel_for(first, last, gather);
+    else
+        for (std::size_t i = first; i < last; ++i) gather(i);
+    for (std::size_t i = first; i < last; ++i) {
+        const PatchId p(i);
+        sweep.change += system.area[p] * glm::abs(fresh[i - first] - B[p]);
+        sweep.total += system.area[p] * fresh[i - first];
+        B[p] = fresh[i - first];
+    }
 }
 
 }  // namespace
-
-Rgb gather_row(const RadiositySystem& system, Radiosity& B, PatchId i)
-{
-    const Rgb now = gathered(system, B, i.value);
-    const Rgb change = now - B[i];
-    B[i] = now;
-    return change;
-}
 
 SolveReport solve_gathering(const RadiositySystem& system, Radiosity& B, const SolveOptions& options,
                             const WorkMonitor& monitor)
@@ -32,29 +45,21 @@ SolveReport solve_gathering(const RadiositySystem& system, Radiosity& B, const S
     report.solver = options.solver;
     Rgb rho_max(0.0);
     for (const Rgb& rho : system.rho.values()) rho_max = glm::max(rho_max, rho);
-    Radiosity before;
+    // Jacobi is one block.
+    const std::size_t n = B.size(), blocks = options.solver == Solver::jacobi ? 1 : std::min(n, most_blocks);
+    std::vector<Rgb> fresh(n / std::max<std::size_t>(1, blocks) + 1);
     while (report.iterations < static_cast<std::size_t>(options.max_sweeps) && !report.converged) {
-        if (monitor.stop.stop_requested()) throw Interrupted();
-        if (options.solver == Solver::jacobi) before = B;
-        Rgb change(0.0), total(0.0);
-        for (std::size_t i = 0; i < B.size(); ++i) {
-            const PatchId p(i);
-            Rgb delta;
-            if (options.solver == Solver::jacobi) {
-                B[p] = gathered(system, before, i);
-                delta = B[p] - before[p];
-            } else {
-                delta = gather_row(system, B, p);
-            }
-            change += system.area[p] * glm::abs(delta);
-            total += system.area[p] * B[p];
+        Sweep sweep;
+        for (std::size_t b = 0; b < blocks; ++b) {
+            if (monitor.stop.stop_requested()) throw Interrupted();
+            gather_block(system, B, b * n / blocks, (b + 1) * n / blocks, fresh, sweep);
         }
         ++report.iterations;
         report.residual = 0;
         for (int band = 0; band < 3; ++band)
-            if (total[band] > 0)
-                report.residual =
-                    std::max(report.residual, change[band] * rho_max[band] / (1 - rho_max[band]) / total[band]);
+            if (sweep.total[band] > 0)
+                report.residual = std::max(report.residual, sweep.change[band] * rho_max[band] / (1 - rho_max[band]) /
+                                                                sweep.total[band]);
         report.history.push_back(report.residual);
         report.converged = report.residual <= options.tolerance;
         // The logarithm of the way down is about linear in sweeps.

@@ -16,28 +16,38 @@ double sum(const Rgb& x)
 /// The state of a progressive solve beside B itself.
 struct Unshot {
     const RadiositySystem& system;
-    Radiosity light;  // ΔB, not yet shot
-    Rgb rho_max{0.0};
+    Radiosity light;  // ΔB, not yet shot; negative: shot before it came
+    Rgb rho_max{0.0}, mean_rho{0.0};
+    double area = 0;
 
     explicit Unshot(const RadiositySystem& s) : system(s), light(s.E)
     {
-        for (const Rgb& rho : s.rho.values()) rho_max = glm::max(rho_max, rho);
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            rho_max = glm::max(rho_max, s.rho[PatchId(i)]);
+            mean_rho += s.area[PatchId(i)] * s.rho[PatchId(i)];
+            area += s.area[PatchId(i)];
+        }
+        if (area > 0) mean_rho /= area;
     }
 
+    /// Σ A|ΔB|.
     Rgb power() const
     {
         Rgb total(0.0);
-        for (std::size_t i = 0; i < light.size(); ++i) total += system.area[PatchId(i)] * light[PatchId(i)];
+        for (std::size_t i = 0; i < light.size(); ++i) total += system.area[PatchId(i)] * glm::abs(light[PatchId(i)]);
         return total;
     }
 
-    PatchId brightest(ShootingOrder order) const
+    /// What the patch shoots when `ambient` light is taken for certain.
+    Rgb shot_of(PatchId i, const Rgb& ambient) const { return light[i] + system.rho[i] * ambient; }
+
+    PatchId brightest(ShootingOrder order, const Rgb& ambient) const
     {
         PatchId best(0);
         double most = -1;
         for (std::size_t i = 0; i < light.size(); ++i) {
             const double weight = order == ShootingOrder::unshot_power ? system.area[PatchId(i)] : 1.0;
-            if (const double now = weight * sum(light[PatchId(i)]); now > most) {
+            if (const double now = weight * sum(glm::abs(shot_of(PatchId(i), ambient))); now > most) {
                 most = now;
                 best = PatchId(i);
             }
@@ -61,13 +71,9 @@ struct Unshot {
     /// [CohenChenWallaceGreenberg88]: the unshot light spread evenly, with all its reflections.
     Rgb ambient() const
     {
-        Rgb reflected(0.0);
-        double area = 0;
-        for (std::size_t i = 0; i < light.size(); ++i) {
-            area += system.area[PatchId(i)];
-            reflected += system.area[PatchId(i)] * system.rho[PatchId(i)];
-        }
-        return power() / area / (1.0 - reflected / area);
+        Rgb left(0.0);
+        for (std::size_t i = 0; i < light.size(); ++i) left += system.area[PatchId(i)] * light[PatchId(i)];
+        return area > 0 ? left / area / (1.0 - mean_rho) : Rgb(0.0);
     }
 };
 
@@ -92,10 +98,11 @@ SolveReport solve_shooting(const RadiositySystem& system, const ColumnSource& co
         if (std::has_single_bit(report.iterations) || report.converged) report.history.push_back(report.residual);
         if (report.converged || report.iterations >= most) break;
 
-        const PatchId shooter = unshot.brightest(options.order);
+        const Rgb ambient = options.overshoot ? unshot.ambient() : Rgb(0.0);
+        const PatchId shooter = unshot.brightest(options.order, ambient);
         report.rays += column_of(shooter, column);
-        const Rgb shot = unshot.light[shooter];
-        unshot.light[shooter] = Rgb(0.0);
+        const Rgb shot = unshot.shot_of(shooter, ambient);
+        unshot.light[shooter] -= shot;
         for (std::size_t j = 0; j < B.size(); ++j) {
             const Rgb arrived = system.rho[PatchId(j)] * column[j] * shot;
             B[PatchId(j)] += arrived;

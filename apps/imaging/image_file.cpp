@@ -1,106 +1,52 @@
-#include "apps/imaging/image_file.h"
+#include "apps/imaging/image_file_module.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/imageio.h>
-
-#include <memory>
+#include <dlfcn.h>
 #include <stdexcept>
 
 namespace patchlight {
 
 namespace {
 
-// Debian's fonts-dejavu-core. By path: what a bare name finds depends on the machine.
-constexpr const char* font_file = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr const char* module_name = "patchlight_image_file.so";
+constexpr const char* entry_name = "patchlight_image_file_module";
 
-OIIO::ImageSpec spec_of(const Image& image, OIIO::TypeDesc type)
+const ImageFileModule& load_module()
 {
-    OIIO::ImageSpec spec(image.width, image.height, 3, type);
-    spec.attribute("Software", "patchlight");
-    // Without this the EXR writer puts today's date in, and no two runs have the same bytes.
-    spec.attribute("DateTime", "");
-    return spec;
+    // By its name alone: the program's run path says where it lies, in the build folder or installed. Never closed.
+    void* const library = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
+    const void* const entry = library ? dlsym(library, entry_name) : nullptr;
+    if (!entry) {
+        throw std::runtime_error(std::string("no pictures without ") + module_name + ": " + dlerror());
+    }
+    return *static_cast<const ImageFileModule*>(entry);
 }
 
-std::vector<unsigned char> encode(const Image& image, const OIIO::ImageSpec& spec, const char* format)
+const ImageFileModule& loaded()
 {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-    if (!output) {
-        throw std::runtime_error(std::string("no writer for ") + format + ": " + OIIO::geterror());
-    }
-    output->threads(1);
-    if (!output->set_ioproxy(&memory) || !output->open(format, spec) ||
-        !output->write_image(OIIO::TypeFloat, image.rgb.data()) || !output->close()) {
-        throw std::runtime_error(std::string("can't encode ") + format + ": " + output->geterror());
-    }
-    return bytes;
+    static const ImageFileModule& module = load_module();
+    return module;
 }
 
 }  // namespace
 
 std::vector<unsigned char> encode_png(const Image& srgb)
 {
-    OIIO::ImageSpec spec = spec_of(srgb, OIIO::TypeUInt8);
-    spec.erase_attribute("DateTime");
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    // A run writes a picture a cycle: a third of the usual level's time, a tenth more bytes.
-    spec.attribute("png:compressionLevel", 3);
-    return encode(srgb, spec, "png");
+    return loaded().encode_png(srgb);
 }
 
 std::vector<unsigned char> encode_exr(const Image& radiance, const ImageMetadata& metadata)
 {
-    OIIO::ImageSpec spec = spec_of(radiance, OIIO::TypeFloat);
-    spec.attribute("compression", "zip");
-    spec.attribute("oiio:ColorSpace", "Linear");
-    for (const auto& [name, value] : metadata) {
-        spec.attribute(name, value);
-    }
-    return encode(radiance, spec, "exr");
+    return loaded().encode_exr(radiance, metadata);
 }
 
 ImageFile read_image(const std::filesystem::path& file)
 {
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
-    if (!input) {
-        throw std::runtime_error(file.string() + ": " + OIIO::geterror());
-    }
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.width > largest_picture_side * 2 ||
-        spec.height > largest_picture_side * 2 || spec.nchannels < 3) {
-        throw std::runtime_error(file.string() + ": not a picture of three channels and a sensible size");
-    }
-    ImageFile result{Image(spec.width, spec.height), {}};
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeFloat, result.image.rgb.data())) {
-        throw std::runtime_error(file.string() + ": " + input->geterror());
-    }
-    for (const auto& attribute : spec.extra_attribs) {
-        if (attribute.type() == OIIO::TypeString) {
-            result.metadata[attribute.name().string()] = attribute.get_string();
-        }
-    }
-    return result;
+    return loaded().read_image(file);
 }
 
 bool draw_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& color, TextAlign align)
 {
-    using OIIO::ImageBufAlgo::TextAlignX;
-    OIIO::ImageBuf canvas(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeFloat), image.rgb.data());
-    const std::vector<float> ink{static_cast<float>(color.r), static_cast<float>(color.g), static_cast<float>(color.b)};
-    const auto side = align == TextAlign::left     ? TextAlignX::Left
-                      : align == TextAlign::center ? TextAlignX::Center
-                                                   : TextAlignX::Right;
-    for (const char* font : {font_file, "DejaVuSans", ""}) {
-        if (OIIO::ImageBufAlgo::render_text(canvas, x, y, text, size, font, ink, side)) {
-            return true;
-        }
-        (void)canvas.geterror();
-    }
-    return false;
+    return loaded().draw_text(image, x, y, text, size, color, align);
 }
 
 }  // namespace patchlight

@@ -186,8 +186,8 @@ double number_in(const std::string& option, const std::string& text)
 double bytes_in(const std::string& option, const std::string& text)
 {
     static const std::vector<std::pair<std::string_view, double>> units{
-        {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}, {"TiB", 0x1p40}, {"kB", 1e3},
-        {"MB", 1e6},     {"GB", 1e9},     {"TB", 1e12},    {"B", 1}};
+        {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}, {"TiB", 0x1p40}, {"kB", 1e3},  {"K", 0x1p10}, {"M", 0x1p20},
+        {"G", 0x1p30},   {"T", 0x1p40},   {"MB", 1e6},     {"GB", 1e9},     {"TB", 1e12}, {"B", 1}};
     for (const auto& [unit, bytes] : units) {
         if (!text.ends_with(unit)) {
             continue;
@@ -198,7 +198,7 @@ double bytes_in(const std::string& option, const std::string& text)
         }
         break;
     }
-    refuse(option, text, "a size such as 8GiB or 500MB");
+    refuse(option, text, "a size such as 8G, 8GiB or 500MB");
 }
 
 }  // namespace patchlight

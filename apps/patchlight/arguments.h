@@ -35,7 +35,8 @@ struct SolveCommand {
     bool quiet = false;
     bool json = false;
     bool demo = false;
-    int threads = 0;  ///< 0: as many as there are
+    double memory = 0;  ///< bytes; 0: 80 % of what the machine has
+    int threads = 0;    ///< 0: as many as there are
 };
 
 struct DemoCommand {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unistd.h>
 
 namespace patchlight {
@@ -23,10 +24,40 @@ double physical_memory()
     return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
 }
 
+double allowed_memory(double limit)
+{
+    return limit > 0 ? limit : 0.8 * physical_memory();
+}
+
 std::string in_gib(double bytes)
 {
     const double gib = bytes / (1024.0 * 1024 * 1024);
     return gib >= 1 ? fmt::format("{:.1f} GiB", gib) : fmt::format("{:.2g} GiB", gib);
+}
+
+/// The matrix of the uniform mesh, a quarter of the elements where others follow, and the largest mesh.
+double solve_bytes(double elements, const AdaptiveOptions& options)
+{
+    const double patches = options.refine == Refine::none ? elements : elements / 4;
+    const FormFactorMethod method = options.form_factors.method;
+    const bool sampled = method == FormFactorMethod::hemisphere || method == FormFactorMethod::hemicube;
+    // Rows that aren't reciprocal are made so beside three copies, or transposed for their columns.
+    const double copies = !sampled                                             ? 1
+                          : options.final.solver == Solver::conjugate_gradient ? 4
+                          : options.final.solver == Solver::progressive        ? 2
+                                                                               : 1;
+    return copies * matrix_bytes(method, static_cast<std::size_t>(patches), options.form_factors) +
+           mesh_bytes(elements);
+}
+
+/// Elements that fit, with two digits, below `most`.
+double fitting_elements(double limit, double most, const AdaptiveOptions& options)
+{
+    double fit = 1;
+    for (double step = most; step >= 1; step = std::floor(step / 2))
+        if (solve_bytes(fit + step, options) <= limit) fit += step;
+    const double digit = std::pow(10, std::max(0.0, std::floor(std::log10(fit)) - 1));
+    return std::floor(fit / digit) * digit;
 }
 
 double elements_of(const Scene& scene, const AdaptiveOptions& options)
@@ -51,15 +82,21 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     // quarter of the elements.
     const double vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
     cost.rays = 0.25 * elements * (options.form_factors.rays + vertex_rays + 6 * options.estimate.rays);
-    cost.bytes =
-        matrix_bytes(options.form_factors.method, cost.elements, options.form_factors) + elements * bytes_per_element;
+    cost.bytes = solve_bytes(static_cast<double>(cost.elements), options);
     return cost;
 }
 
-void check_memory(const Scene& scene, const AdaptiveOptions& options)
+void check_memory(const Scene& scene, const AdaptiveOptions& options, double limit)
 {
-    const double needed = estimate_cost(scene, options).bytes;
-    require_memory(needed, 0, "ask for fewer elements, longer edges or fewer rays");
+    const CostEstimate cost = estimate_cost(scene, options);
+    const double fitting = fitting_elements(allowed_memory(limit), static_cast<double>(cost.elements), options);
+    const bool dense = options.form_factors.method == FormFactorMethod::exact ||
+                       options.form_factors.method == FormFactorMethod::quadrature;
+    require_memory(cost.bytes, limit,
+                   fmt::format("about {:.0f} elements fit: ask for fewer by --max-elements or a longer --max-edge{}",
+                               fitting,
+                               dense ? ", or take --form-factors hemisphere, whose rows don't grow with the elements"
+                                     : ", or for fewer --rays"));
 }
 
 double uniform_elements(const Scene& scene, const MeshingOptions& meshing)
@@ -79,7 +116,7 @@ double mesh_bytes(double elements)
 
 void require_memory(double needed, double limit, const std::string& instead)
 {
-    const double allowed = limit > 0 ? limit : 0.8 * physical_memory();
+    const double allowed = allowed_memory(limit);
     if (needed > allowed) {
         throw LimitError(fmt::format("needs {}, limit {} ({}); {}", in_gib(needed), in_gib(allowed),
                                      limit > 0 ? "--memory" : "80 % of the memory", instead));

@@ -21,8 +21,8 @@ struct Texts {
     SceneTexts scene;
     std::string refine = "both", direct = "exact", elements = "linear", solver = "gauss-seidel", method = "hemisphere",
                 indicator = "residual", marking = "doerfler", directions = "stratified", order = "unshot-power",
-                pictures = "all", size, snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from, to,
-                up = "0,1,0";
+                pictures = "all", memory, size, snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from,
+                to, up = "0,1,0";
     double max_edge = 0, fov = 0;
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;
@@ -86,7 +86,9 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--direct", t.direct, "how the emitters' light is found: their visible part exactly, or by rays")
         ->check(CLI::IsMember(words(direct_names())))
         ->capture_default_str();
-    app.add_option("--solver", t.solver, "of the final solve")
+    app.add_option("--solver", t.solver,
+                   "of the final solve; conjugate-gradient makes rows that aren't reciprocal so first, bicgstab takes "
+                   "them as they are")
         ->check(CLI::IsMember(words(solver_names())))
         ->capture_default_str();
     t.tolerance_option =
@@ -97,6 +99,8 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--order", t.order, "what progressive shoots first")
         ->check(CLI::IsMember(words(order_names())))
         ->capture_default_str();
+    app.add_flag("--overshoot", o.final.overshoot,
+                 "progressive shoots what the ambient light will still bring along [off]");
     app.add_option("--form-factors", t.method,
                    "how the rows that are gathered are found; the light at vertices is always gathered by rays")
         ->check(CLI::IsMember(words(form_factor_names())))
@@ -164,9 +168,8 @@ void finish_solve(SolveCommand& c, const Texts& t)
     if (o.form_factors.resolution % 2 != 0) {
         throw UsageError("usage", fmt::format("--resolution: {} is odd", o.form_factors.resolution));
     }
-    if (o.final.solver == Solver::progressive && o.form_factors.method != FormFactorMethod::hemisphere) {
-        throw UsageError("usage", "--solver progressive shoots by rays over the hemisphere: with --form-factors " +
-                                      t.method + " take gauss-seidel or jacobi");
+    if (o.final.overshoot && o.final.solver != Solver::progressive) {
+        throw UsageError("usage", "--overshoot is for --solver progressive");
     }
     o.form_factors.directions = mode_of(direction_names(), t.directions);
     o.estimate.indicator = mode_of(indicator_names(), t.indicator);
@@ -176,6 +179,9 @@ void finish_solve(SolveCommand& c, const Texts& t)
     const bool uniform = o.refine == Refine::none || o.refine == Refine::discontinuity;
     if (uniform && (t.max_edge <= 0 || t.max_elements_option->count() > 0)) {
         o.meshing.max_elements = o.max_elements;
+    }
+    if (!t.memory.empty()) {
+        c.memory = bytes_in("--memory", t.memory);
     }
     c.pictures.pictures = t.pictures == "all";
     if (!t.size.empty()) {
@@ -305,6 +311,8 @@ struct Parser {
         add_meshing(c, solve, solve_texts);
         add_light(c, solve, solve_texts);
         add_pictures(c, solve, solve_texts);
+        c.add_option("--memory", solve_texts.memory, "refuse what needs more, as 8GiB or 500MB [80 % of the machine's]")
+            ->type_name("SIZE");
         add_machine(c, solve.threads, solve.quiet, solve.json, run_json);
     }
 

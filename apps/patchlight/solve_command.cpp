@@ -110,7 +110,7 @@ int run_command(const SolveCommand& command, Session& session)
     }
     SceneInput input = load_scene(command.scene);
     session.interruption.check();
-    check_memory(input.scene, command.options);
+    check_memory(input.scene, command.options, command.memory);
     const RayCaster caster(input.scene);
     const View view = command.pictures.pictures ? chosen_view(command.scene.view, input.scene, caster) : View{};
     if (command.pictures.pictures) {

@@ -25,8 +25,11 @@ const ModeNames<Elements>& element_names()
 
 const ModeNames<Solver>& solver_names()
 {
-    static const ModeNames<Solver> names{
-        {"progressive", Solver::progressive}, {"jacobi", Solver::jacobi}, {"gauss-seidel", Solver::gauss_seidel}};
+    static const ModeNames<Solver> names{{"progressive", Solver::progressive},
+                                         {"jacobi", Solver::jacobi},
+                                         {"gauss-seidel", Solver::gauss_seidel},
+                                         {"conjugate-gradient", Solver::conjugate_gradient},
+                                         {"bicgstab", Solver::bicgstab}};
     return names;
 }
 
@@ -107,7 +110,8 @@ Json json_of(const SolveOptions& options)
             {"tolerance", options.tolerance},
             {"max_sweeps", options.max_sweeps},
             {"order", name_of(order_names(), options.order)},
-            {"ambient", options.ambient}};
+            {"ambient", options.ambient},
+            {"overshoot", options.overshoot}};
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct CycleRecord {
     std::size_t solver_iterations = 0;
     double solver_residual = 0;
     bool solver_converged = false;
+    std::vector<double> solver_history;                ///< residuals on the way, as SolveReport has them
     std::size_t splits = 0;                            ///< edges that the plan halves next, and lines that it inserts
     std::array<LineCount, line_kinds.size()> lines{};  ///< by kind
     EnergyBalance energy;

@@ -48,8 +48,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"report", "a", "-o", "b"}, std::vector<std::string>{"study", "run", "a"},
                       solving({"--refine", "quadratic"}), solving({"--solver", "hierarchical"}),
                       solving({"--form-factors", "monte-carlo"}), solving({"--form-factors", "closed-form"}),
-                      solving({"--form-factors", "exact", "--solver", "progressive"}), solving({"--resolution", "127"}),
-                      solving({"--mesh", "a"}), std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
+                      solving({"--overshoot"}), solving({"--resolution", "127"}), solving({"--mesh", "a"}),
+                      std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, RefusedArguments,
@@ -65,9 +65,10 @@ INSTANTIATE_TEST_SUITE_P(
                       solving({"--emitter", "lamp"}), solving({"--emitter", "lamp=-1"}),
                       solving({"--emitter", "lamp=1,2"}), solving({"--emitter", "lamp=nan"}),
                       solving({"--emitter", "lamp=1", "--emitter", "lamp=2"}), solving({"--unit", "parsec"}),
-                      solving({"--max-reflectance", "1"}), solving({"--seed", "-1"}),
-                      solving({"--crease-angle", "181"}), solving({"--marking", "all"}), solving({"--direct", "none"}),
-                      solving({"--direct", "exactly"}), solving({"--refine", "lines"}), solving({"--refine", ""}),
+                      solving({"--max-reflectance", "1"}), solving({"--seed", "-1"}), solving({"--memory", "8"}),
+                      solving({"--memory", "-1GB"}), solving({"--memory", "0MiB"}), solving({"--crease-angle", "181"}),
+                      solving({"--marking", "all"}), solving({"--direct", "none"}), solving({"--direct", "exactly"}),
+                      solving({"--refine", "lines"}), solving({"--refine", ""}),
                       std::vector<std::string>{"render", "run", "-o", "a.jpg"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--from", "1,2,3"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--from", "1,2,3", "--to", "1,2,3"},
@@ -158,6 +159,22 @@ TEST(Arguments, RefinementAndDirectLightCanBeChosen)
     EXPECT_EQ(options({"--refine", "discontinuity"}).refine, Refine::discontinuity);
     EXPECT_EQ(options({"--direct", "exact"}).direct, Direct::exact);
     EXPECT_EQ(options({"--direct", "sampled"}).direct, Direct::sampled);
+}
+
+TEST(Arguments, SolversAndMemoryArrive)
+{
+    const auto command = [](std::vector<std::string> words) {
+        return std::get<SolveCommand>(parse(solving(std::move(words))));
+    };
+    EXPECT_EQ(command({}).options.final.solver, Solver::gauss_seidel);
+    EXPECT_EQ(command({"--solver", "conjugate-gradient"}).options.final.solver, Solver::conjugate_gradient);
+    EXPECT_EQ(command({"--solver", "bicgstab"}).options.final.solver, Solver::bicgstab);
+    EXPECT_TRUE(command({"--solver", "progressive", "--overshoot"}).options.final.overshoot);
+    EXPECT_EQ(command({"--solver", "progressive", "--form-factors", "exact"}).options.final.tolerance, 0.01);
+    EXPECT_EQ(command({}).memory, 0) << "what the machine has";
+    EXPECT_EQ(command({"--memory", "4G"}).memory, 0x1p32);
+    EXPECT_EQ(command({"--memory", "512MiB"}).memory, 0x1p29);
+    EXPECT_EQ(command({"--memory", "1.5GB"}).memory, 1.5e9);
 }
 
 TEST(Arguments, FormFactorsBetweenObjectsAndOfAllPatchesHaveTheirOwnDefaults)
