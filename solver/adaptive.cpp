@@ -1,5 +1,8 @@
 #include "solver/adaptive.h"
 
+#include "solver/importance.h"
+
+#include <algorithm>
 #include <chrono>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -152,7 +155,10 @@ IndirectOptions indirect_options(const AdaptiveOptions& options)
 bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const RefinementPlan& plan, int cycle,
               const AdaptiveOptions& options)
 {
-    const bool good = options.target_error > 0 && error.relative <= options.target_error;
+    // Contacts that aren't in the first mesh yet are wrong whatever the estimate of the whole says.
+    const bool contacts =
+        cycle == 0 && std::ranges::any_of(plan.lines, [](const SurfaceLine& l) { return l.kind == LineKind::contact; });
+    const bool good = options.target_error > 0 && error.relative <= options.target_error && !contacts;
     // Within a fiftieth of the budget a further cycle would cost more than it buys.
     const bool full = options.max_elements > 0 && 50 * mesh.patch_count() >= 49 * options.max_elements;
     const bool lined = options.refine == Refine::discontinuity && !mesh.lines().empty();
@@ -166,12 +172,26 @@ Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
     return cycle == 0 ? Stage::rough : Stage::adaptive;
 }
 
+/// How much the patches of the uniform mesh count for what is looked at; empty: all alike.
+PatchField<double> weights_of(const Exchange& coarse, const RadiositySystem& system, const AdaptiveOptions& options)
+{
+    if (options.looked_at.empty()) return {};
+    std::vector<PatchId> seen;
+    for (const SurfacePoint& point : options.looked_at) {
+        const Vec2 q = coarse.scene.surface(point.surface).frame.to_plane(point.position);
+        seen.push_back(coarse.locator.locate(point.surface, static_cast<float>(q.x), static_cast<float>(q.y)));
+    }
+    const PatchField<double> shares = seen_shares(coarse.mesh.patch_count(), seen);
+    return importance_weights(system, importance(system, rows_of(system.F), shares));
+}
+
 RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const Radiosity& B, const ErrorEstimate& error,
-                         std::span<const Discontinuity> lines, const AdaptiveOptions& options)
+                         const PatchField<double>& weights, std::span<const Discontinuity> lines,
+                         const AdaptiveOptions& options)
 {
     RefinementPlan plan;
     if (options.refine == Refine::intensity || options.refine == Refine::both)
-        plan = mark(scene, mesh, B, error, options.mark);
+        plan = mark(scene, mesh, B, weights.empty() ? error : weighted(error, weights), options.mark);
     if (uses_lines(options))
         plan.lines =
             worthwhile_lines(scene, mesh, error, lines, options.max_elements, options.target_error, options.lines);
@@ -202,14 +222,15 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
     stages.seconds.mesh = seconds_since(begin);
     const PatchSolution patches = solve_patches(coarse, options, stages);
     std::size_t rays = patches.rays;
+    const PatchField<double> weights = weights_of(coarse, patches.system, options);
 
     // What lights the nodes of a mesh: emitters and indirect light, or, on the uniform mesh alone, rays to its patches.
     std::optional<IndirectLight> indirect;
     if (options.refine != Refine::none) {
         indirect =
             stages.run("indirect", &StageSeconds::gather, uniform.patch_count(), [&](const WorkMonitor& monitor) {
-                return solve_indirect({coarse, patches.system, patches.B}, emitted.light, indirect_options(options),
-                                      monitor);
+                return solve_indirect({coarse, patches.system, patches.B, weights.empty() ? nullptr : &weights},
+                                      emitted.light, indirect_options(options), monitor);
             });
         rays += indirect->rays;
     }
@@ -225,9 +246,10 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
             gather.rays = gather_rays;
             return light_from_patches(coarse, patches.B, gather);
         };
+        const PatchField<double> counts = weights.empty() ? weights : weights_on(scene, mesh, uniform_locator, weights);
         RefinementPlan plan;
         if (start) {  // this cycle was observed by the run that is continued
-            plan = plan_next(scene, mesh, start->B, start->error, emitted.lines, options);
+            plan = plan_next(scene, mesh, start->B, start->error, counts, emitted.lines, options);
             start.reset();
         } else {
             Evaluation evaluation =
@@ -237,7 +259,7 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                 });
             rays += evaluation.rays;
             Radiosity B = cycle == 0 ? patches.B : patch_means(mesh, evaluation.vertex_B);
-            plan = plan_next(scene, mesh, B, evaluation.error, emitted.lines, options);
+            plan = plan_next(scene, mesh, B, evaluation.error, counts, emitted.lines, options);
             const bool last = finished(mesh, evaluation.error, plan, cycle, options);
             Reconstruction nodes{std::move(evaluation.vertex_B), {}, 0};
             if (last && (!indirect || options.elements == Elements::quadratic)) {

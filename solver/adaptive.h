@@ -39,6 +39,9 @@ struct AdaptiveOptions {
     int iterations = 40;                   ///< refinements at most, ≥ 1
     double target_error = 0;               ///< stop when the estimated error is below; 0 = go on to the budget
     std::size_t max_elements = 8000;       ///< budget of patches
+    /// What is looked at: points that count alike. Refinement is weighted by how much light there depends on a patch;
+    /// the estimated error stays that of the whole scene. None: everything counts alike.
+    std::vector<SurfacePoint> looked_at;
 };
 
 /// Wall seconds of one cycle, for timing.json only.

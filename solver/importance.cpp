@@ -65,4 +65,16 @@ ErrorEstimate weighted(const ErrorEstimate& error, const PatchField<double>& wei
     return result;
 }
 
+PatchField<double> weights_on(const Scene& scene, const PatchMesh& mesh, const PatchLocator& locator,
+                              const PatchField<double>& weights)
+{
+    PatchField<double> result(mesh.patch_count(), 1.0);
+    for (const PatchId p : mesh.patches()) {
+        const Vec2 q = scene.surface(mesh.surface(p)).frame.to_plane(mesh.centroid(p));
+        const PatchId under = locator.locate(mesh.surface(p), static_cast<float>(q.x), static_cast<float>(q.y));
+        if (under.valid()) result[p] = weights[under];
+    }
+    return result;
+}
+
 }  // namespace patchlight

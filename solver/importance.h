@@ -31,4 +31,9 @@ PatchField<double> importance_weights(const RadiositySystem& system, const Impor
 /// over a picture's pixels does. For mark(); total and relative stay those of the whole scene.
 ErrorEstimate weighted(const ErrorEstimate& error, const PatchField<double>& weights);
 
+/// Weights carried to another mesh of the scene: each patch has that of the patch under its middle; 1 where there is
+/// none.
+PatchField<double> weights_on(const Scene& scene, const PatchMesh& mesh, const PatchLocator& locator,
+                              const PatchField<double>& weights);
+
 }  // namespace patchlight

@@ -1,6 +1,7 @@
 #include "solver/indirect_light.h"
 
 #include "meshing/refinement.h"
+#include "solver/importance.h"
 #include "solver/light_carrier.h"
 
 #include <algorithm>
@@ -285,12 +286,14 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
                                {options.target_error / 2, options.max_elements / 2, options.gather, options.mark},
                                monitor);
     QuadraticRadiosity leaving = carrier.leaving(light);
-    const double goal = 0.4 * options.target_error * carrier.norm(leaving);
+    // Without a target: about as good as the mesh will be in the end, with twice the carrier's elements.
+    const double target = options.target_error > 0 ? options.target_error : 1.5 * carrier.error();
+    const double goal = 0.4 * target * carrier.norm(leaving);
     const Probes probes = spread_probes(scene, start.mesh, 512, options.gather.seed);
     std::size_t rays = 0;
     const int vertex_rays = options.rays > 0 ? options.rays
                             : goal > 0       ? rays_for(goal, carrier, leaving, probes, options, rays, monitor)
-                                       : static_cast<int>(std::clamp<std::size_t>(options.max_elements / 6, 64, 65536));
+                                             : 64;
 
     Gathered gathered(carrier,
                       {.rays = vertex_rays / 2, .directions = options.directions, .seed = options.gather.seed});
@@ -307,10 +310,11 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
         const ElementPoints nodes = element_points(exchange);
         light = light_on(copy_of(scene, mesh), nodes, mean_of_both(found));
         leaving = carrier.leaving(light);
-        const double noise = noise_of(scene, nodes.points, vertex_areas(scene, mesh), found);
-        const RefinementPlan plan = mark(scene, mesh, at_middles(scene, mesh, carrier, leaving), error, options.mark);
+        const ErrorEstimate counted =
+            rough.weights ? weighted(error, weights_on(scene, mesh, start.locator, *rough.weights)) : error;
+        const RefinementPlan plan = mark(scene, mesh, at_middles(scene, mesh, carrier, leaving), counted, options.mark);
         const bool full = 20 * mesh.patch_count() >= 19 * budget.max_elements;
-        if (plan.empty() || full || error.total < 3 * (goal > 0 ? goal : noise) || cycle == 60) break;
+        if (plan.empty() || full || error.total < 3 * goal || cycle == 60) break;
         mesh = refined(scene, mesh, plan, budget);
     }
 

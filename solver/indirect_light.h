@@ -51,6 +51,7 @@ struct RoughSolution {
     const Exchange& exchange;
     const RadiositySystem& system;
     const Radiosity& B;
+    const PatchField<double>* weights = nullptr;  ///< how much each patch's error counts (see importance.h); null: 1
 };
 
 /// Solves the indirect light. First that of the rough solution, averaged at its vertices. Then, from a coarse mesh with

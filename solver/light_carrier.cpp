@@ -24,8 +24,9 @@ LightCarrier::LightCarrier(const Exchange& start, const EmittedLight& emitted, c
         const Evaluation found =
             evaluate(exchange, light, Indicator::residual, options.gather.crease_angle, 0, monitor);
         const RefinementPlan plan = mark(scene_, mesh, patch_means(mesh, found.vertex_B), found.error, options.mark);
+        error_ = found.error.relative;
         const bool full = 20 * mesh.patch_count() >= 19 * budget.max_elements;
-        if (plan.empty() || full || found.error.relative < options.target_error) break;
+        if (plan.empty() || full || error_ < options.target_error) break;
         mesh = refined(scene_, mesh, plan, budget);
     }
     hold(start, std::move(mesh));

@@ -25,6 +25,9 @@ public:
 
     const Exchange& exchange() const { return *exchange_; }
 
+    /// What its mesh leaves of linear light, relative: an estimate.
+    double error() const { return error_; }
+
     /// ρ(H_emitters + H_indirect) at its nodes, W/m²; with E where the emitters' light isn't apart.
     QuadraticRadiosity leaving(const IndirectLight& indirect) const;
 
@@ -39,6 +42,7 @@ private:
 
     const Scene& scene_;
     bool apart_;
+    double error_ = 0;
     std::unique_ptr<const PatchMesh> mesh_;
     std::unique_ptr<const PatchLocator> locator_;
     std::optional<Exchange> exchange_;

@@ -32,6 +32,8 @@ struct SolveCommand {
     std::string run;
     AdaptiveOptions options;
     PictureArguments pictures;
+    std::string for_view;      ///< a camera's name or a file: refined for what it sees; empty: for everything
+    std::optional<View> goal;  ///< that camera, once the scene is read
     bool quiet = false;
     bool json = false;
     bool demo = false;

@@ -61,6 +61,10 @@ void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
         ->check(whole_between(1, 1000))
         ->type_name("N")
         ->capture_default_str();
+    app.add_option("--for-view", c.for_view,
+                   "a camera, as --view names it: refine for what it sees, directly or by the light that comes from "
+                   "there [everything counts alike]")
+        ->type_name("NAME|FILE");
     app.add_option("--indicator", t.indicator, "what is taken for the error of a patch")
         ->check(CLI::IsMember(words(indicator_names())))
         ->capture_default_str();

@@ -1,3 +1,4 @@
+#include "apps/imaging/view_rays.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
 #include "apps/patchlight/scene_input.h"
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <limits>
 #include <optional>
 #include <system_error>
 
@@ -28,6 +30,30 @@ std::vector<std::string> gather_warnings(const SceneInput& input, const RayCaste
         session.messages.warning(warning);
     }
     return warnings;
+}
+
+/// What a camera sees, through the pixels of a small picture of it.
+std::vector<SurfacePoint> seen_points(const Scene& scene, const RayCaster& caster, const View& view)
+{
+    constexpr int height = 120;
+    const int width = picture_size(std::nullopt, view).first * height / picture_size(std::nullopt, view).second;
+    const ViewRays camera(view, width, height);
+    RayBatch rays;
+    HitBatch hits;
+    rays.resize(static_cast<std::size_t>(width) * height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            rays.set(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x),
+                     camera.from(), camera.direction(x + 0.5, y + 0.5), std::numeric_limits<float>::infinity());
+    caster.closest(rays, hits);
+    std::vector<SurfacePoint> points;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (hits.surface[i] >= HitBatch::black_back) continue;
+        const SurfaceId surface(hits.surface[i]);
+        const Vec3 place = scene.surface(surface).frame.lift(Vec2(hits.x[i], hits.y[i]));
+        points.push_back({place, surface, place});
+    }
+    return points;
 }
 
 std::string summary_of(const RunFolder& folder)
@@ -101,8 +127,9 @@ void open_folder(std::optional<RunFolder>& folder, const SolveCommand& command, 
 
 }  // namespace
 
-int run_command(const SolveCommand& command, Session& session)
+int run_command(const SolveCommand& given, Session& session)
 {
+    SolveCommand command = given;
     session.messages.set_quiet(command.quiet);
     std::optional<tbb::global_control> threads;
     if (command.threads > 0) {
@@ -117,6 +144,10 @@ int run_command(const SolveCommand& command, Session& session)
         // Stored first: `render` without --view shows what the run's own pictures show.
         std::erase_if(input.scene.views, [&](const View& other) { return other.name == view.name; });
         input.scene.views.insert(input.scene.views.begin(), view);
+    }
+    if (!command.for_view.empty()) {
+        command.goal = chosen_view(command.for_view, input.scene, caster);
+        command.options.looked_at = seen_points(input.scene, caster, *command.goal);
     }
     const std::vector<std::string> warnings = gather_warnings(input, caster, session);
     session.interruption.check();

@@ -73,6 +73,7 @@ RunIdentity identity_of(const SceneInput& input, const SolveCommand& command, co
     // A round trip through text, so that options compare as they will when read back: names in UTF-8 and numbers alike.
     const Json options = {{"scene", scene},
                           {"solve", json_of(command.options)},
+                          {"for_view", command.goal ? json_of(*command.goal) : Json()},
                           {"pictures",
                            {{"written", command.pictures.pictures ? "all" : "none"},
                             {"width", width},
