@@ -21,7 +21,7 @@ enum class FormFactorMethod {
 
 /// The set of directions over the hemisphere.
 enum class HemisphereDirections {
-    stratified,  ///< cosine-weighted, one a stratum, seeded: ΔF = 1/n each
+    stratified,  ///< cosine-weighted points of a scrambled net: ΔF = 1/n each
     regular_grid,  ///< the lecture's: Δφ = Δθ = 2π/k, ring m at its middle, weighed exactly by sin² of its borders / k
     lecture_grid  ///< the same directions with the lecture's ΔF = (2π/k²) sin 2θ, which sums to Δθ·cot Δθ
 };

@@ -1,6 +1,6 @@
 #include "formfactor/hemisphere.h"
 
-#include "formfactor/random_numbers.h"
+#include "formfactor/scrambled_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,16 +54,17 @@ HemisphereSet stratified(int rays, RandomNumbers& random)
 {
     const int rings = std::max(2, 2 * static_cast<int>(std::lround(std::sqrt(rays / 6.0) / 2)));
     const int sectors = 4 * ((rays + 4 * rings - 1) / (4 * rings));
-    const double factor = 1.0 / (rings * sectors);
+    const ScrambledPoints net(random.bits(), random.bits());
+    std::vector<std::array<double, 2>> points;
+    for (int i = 0; i < rings * sectors; ++i) points.push_back(net(static_cast<std::uint32_t>(i)));
+    // In tiles of 2 rings × 4 sectors' size: packets of similar rays.
+    const auto tile = [&](const std::array<double, 2>& p) {
+        return std::pair(std::floor(p[0] * rings / 2), std::floor(p[1] * sectors / 4));
+    };
+    std::ranges::stable_sort(points, [&](const auto& a, const auto& b) { return tile(a) < tile(b); });
     HemisphereSet set;
-    // Tiles of 2 rings × 4 sectors make packets of similar rays.
-    for (int ring = 0; ring < rings; ring += 2)
-        for (int sector = 0; sector < sectors; sector += 4)
-            for (int k = 0; k < 8; ++k) {
-                const double u = (ring + k / 4 + random.uniform()) / rings;
-                const double v = (sector + k % 4 + random.uniform()) / sectors;
-                add(set, std::sqrt(u), std::sqrt(1 - u), 2 * std::numbers::pi * v, factor);
-            }
+    for (const auto& [u, v] : points)
+        add(set, std::sqrt(u), std::sqrt(1 - u), 2 * std::numbers::pi * v, 1.0 / (rings * sectors));
     return set;
 }
 
@@ -114,6 +115,21 @@ void aim(const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatc
         rays.dz[i] = x * uz + y * vz + z * nz;
         rays.reach[i] = std::numeric_limits<float>::infinity();
     }
+}
+
+PickedSet pick_set(std::size_t sets, std::uint64_t seed, std::uint64_t key)
+{
+    RandomNumbers random(seed, ~key);
+    const std::size_t index = random.below(static_cast<std::uint32_t>(sets));
+    return {index, 2 * std::numbers::pi * random.uniform()};
+}
+
+void aim_from(const Vec3& start, const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays)
+{
+    aim(set, frame, turn, rays);
+    std::fill_n(rays.ox.begin(), set.size(), static_cast<float>(start.x));
+    std::fill_n(rays.oy.begin(), set.size(), static_cast<float>(start.y));
+    std::fill_n(rays.oz.begin(), set.size(), static_cast<float>(start.z));
 }
 
 }  // namespace patchlight

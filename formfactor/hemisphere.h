@@ -21,7 +21,8 @@ struct HemisphereSet {
 
 /// The sets of directions asked for. `options.rays` is rounded: stratified to rings × sectors, the grids to k·k/4
 /// with k a multiple of 4 (k = 45 gives 495 rays; the lecture's k = 64 gives 1,024).
-/// Stratified: r = √u, φ = 2πv, one (u, v) in each of rings × sectors equal strata: ΔF = 1/n.
+/// Stratified: r = √u, φ = 2πv for the first n points (u, v) of a scrambled net (ScrambledPoints): ΔF = 1/n. Its noise
+/// is three quarters of that of points jittered in rings × sectors strata.
 std::vector<HemisphereSet> hemisphere_sets(const FormFactorOptions& options, int count);
 
 /// The lecture's grid: φ = lΔφ, θ = (m + ½)Δθ, Δφ = Δθ = 2π/k; `exact_rings` weighs ring m with
@@ -32,5 +33,15 @@ HemisphereSet regular_grid(int k, bool exact_rings);
 /// Turns the set's directions by `turn` radians about the frame's normal and writes them as rays without an end; the
 /// origins are the caller's to set.
 void aim(const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays);
+
+/// Which of several sets a key picks, and by how much it is turned.
+struct PickedSet {
+    std::size_t index = 0;
+    double turn = 0;  ///< radians
+};
+PickedSet pick_set(std::size_t sets, std::uint64_t seed, std::uint64_t key);
+
+/// aim(), all rays from one place, already off its surface (RayCaster::leave).
+void aim_from(const Vec3& start, const HemisphereSet& set, const PlaneFrame& frame, double turn, RayBatch& rays);
 
 }  // namespace patchlight

@@ -107,13 +107,9 @@ void RowSampler::point_row(const Vec3& position, SurfaceId surface, std::uint64_
                            std::uint64_t jitter_key, RowScratch& scratch) const
 {
     const PlaneFrame& frame = scene_.surface(surface).frame;
-    RandomNumbers random(options_.seed, ~direction_key);
-    const HemisphereSet& set = sets_[random.below(set_count)];
-    aim(set, frame, 2 * std::numbers::pi * random.uniform(), scratch.rays);
-    const Vec3 start = caster_.leave(position, frame.n);
-    std::fill_n(scratch.rays.ox.begin(), set.size(), static_cast<float>(start.x));
-    std::fill_n(scratch.rays.oy.begin(), set.size(), static_cast<float>(start.y));
-    std::fill_n(scratch.rays.oz.begin(), set.size(), static_cast<float>(start.z));
+    const PickedSet picked = pick_set(sets_.size(), options_.seed, direction_key);
+    const HemisphereSet& set = sets_[picked.index];
+    aim_from(caster_.leave(position, frame.n), set, frame, picked.turn, scratch.rays);
     accumulate(set, scratch);
     scratch.receivers.assign(1, {position, frame.n});
     swap_small_sources(surface, jitter_key, scratch);

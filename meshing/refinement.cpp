@@ -191,7 +191,7 @@ PatchMesh triangulate(const Scene& scene, const MeshingOptions& options, std::sp
     return join(scene, triangulate_all(scene, max_edge, options.min_angle, lines_of));
 }
 
-Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options)
+PatchMesh refined(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options)
 {
     const std::size_t most = options.max_elements > 0 ? std::max(options.max_elements, mesh.patch_count())
                                                       : std::numeric_limits<std::size_t>::max();
@@ -209,17 +209,14 @@ Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPla
         if (!edges[s.value].empty())
             pieces[s.value] = bisect_edges({scene.surface(s).frame, scene.diameter}, pieces[s.value], edges[s.value]);
     });
-    PatchMesh refined = join(scene, pieces);
-    PatchTransfer transfer = overlap(mesh, PatchLocator(mesh), refined);
-    return {std::move(refined), std::move(transfer)};
+    return join(scene, pieces);
 }
 
-Refinement remesh(const Scene& scene, const PatchMesh& mesh, std::span<const SurfaceLine> lines,
-                  const MeshingOptions& options)
+Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options)
 {
-    PatchMesh fresh = triangulate(scene, options, lines);
-    PatchTransfer transfer = overlap(mesh, PatchLocator(mesh), fresh);
-    return {std::move(fresh), std::move(transfer)};
+    PatchMesh next = refined(scene, mesh, plan, options);
+    PatchTransfer transfer = overlap(mesh, PatchLocator(mesh), next);
+    return {std::move(next), std::move(transfer)};
 }
 
 PatchField<Rgb> prolong(const PatchMesh& new_mesh, const PatchField<Rgb>& values, const PatchTransfer& transfer)

@@ -57,11 +57,10 @@ PatchMesh triangulate(const Scene& scene, const MeshingOptions& options, std::sp
 /// vertices stay, but for surfaces that get their first lines: these are meshed anew, of their outline and the lines
 /// alone; where there are new lines, nothing is bisected yet. An empty plan gives the same mesh. When the budget
 /// doesn't reach, only the first lines and bisections are honoured.
-Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
+PatchMesh refined(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
 
-/// The uniform mesh with the lines as edges, as triangulate() makes it, instead of `mesh`.
-Refinement remesh(const Scene& scene, const PatchMesh& mesh, std::span<const SurfaceLine> lines,
-                  const MeshingOptions& options);
+/// The same, with what carries values per patch over.
+Refinement refine(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan, const MeshingOptions& options);
 
 /// Which old patches each new one covers, by clipping them against each other in their surface's plane.
 PatchTransfer overlap(const PatchMesh& old_mesh, const PatchLocator& old_locator, const PatchMesh& new_mesh);

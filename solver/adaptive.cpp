@@ -1,6 +1,8 @@
 #include "solver/adaptive.h"
 
 #include <chrono>
+#include <tbb/parallel_for.h>
+#include <utility>
 
 namespace patchlight {
 
@@ -13,48 +15,17 @@ double seconds_since(Clock::time_point begin)
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// What one solve left: how it went, where the light went, and the reconstruction.
-struct Solved {
-    SolveReport report;
-    EnergyBalance energy;
-    VertexRadiosity vertex_B;
-    MidpointRadiosity middle_B;
-};
+/// Runs the stages of a cycle: tells the observers, adds up the seconds.
+class Stages {
+public:
+    explicit Stages(const AdaptiveObservers& observers) : observers_(observers) {}
 
-SolveReport shoot(const Exchange& exchange, const RadiositySystem& system, Radiosity& B, const SolveOptions& options,
-                  const FormFactorOptions& sampling, const WorkMonitor& monitor)
-{
-    const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, emitters(exchange.scene),
-                             sampling);
-    const ColumnSource column_of = [&](PatchId shooter, std::span<double> column) {
-        return sampler.shooter_column(shooter, column, {monitor.stop, {}});
-    };
-    return solve_shooting(system, column_of, B, options, monitor);
-}
-
-/// From B to its reflected part, which starts from what direct light leaves: R = ρ H_direct + ρ F R.
-void take_direct_light(RadiositySystem& system, Radiosity& B)
-{
-    for (std::size_t i = 0; i < B.size(); ++i) {
-        const PatchId p(i);
-        B[p] -= system.E[p];
-        system.E[p] = system.rho[p] * system.direct[p];
-    }
-}
-
-void add(const Radiosity& more, Radiosity& B)
-{
-    for (std::size_t i = 0; i < B.size(); ++i) B[PatchId(i)] += more[PatchId(i)];
-}
-
-/// The stages of one cycle on one mesh: runs, times and reports each.
-class Cycle {
     template <class Work>
-    auto stage(std::string_view name, double& spent, const Work& work)
+    auto run(std::string_view name, double StageSeconds::*spent, std::size_t elements, const Work& work)
     {
         if (observers_.stop.stop_requested()) throw Interrupted();
         WorkMonitor monitor{observers_.stop, {}};
-        Progress progress{name, number_, 0, exchange_.mesh.patch_count()};
+        Progress progress{name, cycle, 0, elements};
         if (observers_.on_progress)
             monitor.tell = [this, progress](const WorkState& state) mutable {
                 progress.fraction = state.fraction;
@@ -65,93 +36,14 @@ class Cycle {
         if (monitor.tell) monitor.tell({});
         const auto begin = Clock::now();
         auto result = work(monitor);
-        spent += seconds_since(begin);
+        seconds.*spent += seconds_since(begin);
         return result;
     }
 
-public:
-    Cycle(const Scene& scene, const RayCaster& caster, const DirectLight* direct, const PatchMesh& mesh, int number,
-          const AdaptiveOptions& options, const AdaptiveObservers& observers)
-        : locator_(mesh), exchange_{scene, caster, mesh, locator_, direct}, number_(number), options_(options),
-          observers_(observers)
-    {}
-
-    /// First shooting on the coarse mesh; later gathering a little, from what the coarser mesh knew.
-    Solved solve_roughly(Radiosity& B)
-    {
-        FormFactorOptions coarse = options_.form_factors;
-        coarse.rays = std::max(64, coarse.rays / 4);
-        return number_ == 0 ? solve(B, options_.rough, coarse)
-                            : solve(B, {.solver = Solver::gauss_seidel, .tolerance = 0.02}, coarse);
-    }
-
-    /// The final solve: all rays, the tight tolerance, light gathered at the elements' nodes.
-    Solved solve_tightly(Radiosity& B)
-    {
-        Solved solved = solve(B, options_.final, options_.form_factors);
-        Reconstruction nodes = stage("gather", seconds.gather, [&](const WorkMonitor& monitor) {
-            return reconstruct(exchange_, B, options_.gather, monitor, options_.elements);
-        });
-        rays += nodes.rays;
-        solved.vertex_B = std::move(nodes.B);
-        solved.middle_B = std::move(nodes.middle_B);
-        return solved;
-    }
-
-    Evaluation evaluate(const Radiosity& B)
-    {
-        return stage("estimate", seconds.estimate, [&](const WorkMonitor& monitor) {
-            Evaluation evaluation = patchlight::evaluate(exchange_, B, options_.estimate, options_.gather, monitor);
-            rays += evaluation.rays;
-            return evaluation;
-        });
-    }
-
-    Refinement refine(const RefinementPlan& plan)
-    {
-        MeshingOptions meshing = options_.meshing;
-        meshing.max_elements = options_.max_elements;
-        return stage("mesh", seconds.mesh, [&](const WorkMonitor&) {
-            return options_.refine == Refine::discontinuity
-                       ? remesh(exchange_.scene, exchange_.mesh, plan.lines, meshing)
-                       : patchlight::refine(exchange_.scene, exchange_.mesh, plan, meshing);
-        });
-    }
-
+    int cycle = 0;
     StageSeconds seconds;
-    std::size_t rays = 0;
 
 private:
-    Solved solve(Radiosity& B, const SolveOptions& options, const FormFactorOptions& sampling)
-    {
-        const bool shooting = options.solver == Solver::progressive;
-        // Shooting computes columns on demand; the tight solve assembles all the same, for the energy balance.
-        const bool rows = !shooting || &options == &options_.final;
-        RadiositySystem system = stage("assemble", seconds.assemble, [&](const WorkMonitor& monitor) {
-            RadiositySystem made = rows ? assemble(exchange_, sampling, monitor) : unassembled(exchange_);
-            if (options.solver == Solver::conjugate_gradient) make_reciprocal(made, exchange_.scene.closed);
-            return made;
-        });
-        Solved solved;
-        const Radiosity emission = system.E;
-        if (exchange_.direct) take_direct_light(system, B);
-        solved.report = stage("solve", seconds.solve, [&](const WorkMonitor& monitor) {
-            return rows ? patchlight::solve(system, B, options, monitor)
-                        : shoot(exchange_, system, B, options, sampling, monitor);
-        });
-        if (exchange_.direct) {
-            add(emission, B);
-            system.E = emission;
-        }
-        if (rows) solved.energy = energy_balance(system, B);
-        rays += system.F.rays + solved.report.rays;
-        return solved;
-    }
-
-    PatchLocator locator_;
-    Exchange exchange_;
-    int number_;
-    const AdaptiveOptions& options_;
     const AdaptiveObservers& observers_;
 };
 
@@ -168,6 +60,94 @@ PatchMesh first_mesh(const Scene& scene, const AdaptiveOptions& options)
     if (4 * mesh.patch_count() <= options.max_elements) return mesh;
     coarser.min_angle = 0;
     return triangulate(scene, coarser);
+}
+
+bool uses_lines(const AdaptiveOptions& options)
+{
+    return options.refine == Refine::discontinuity || options.refine == Refine::both;
+}
+
+/// The emitters' light, as far as it is asked for, and where it breaks off. Depends on the scene alone.
+struct Emitted {
+    Emitted(const Scene& scene, const AdaptiveOptions& options, const AdaptiveObservers& observers)
+    {
+        const WorkMonitor monitor{observers.stop, {}};
+        if (options.direct == Direct::exact || uses_lines(options)) exact = emitters_light(scene, monitor);
+        if (observers.on_progress && uses_lines(options)) observers.on_progress({.stage = "lines"});
+        if (uses_lines(options)) lines = discontinuities(scene, exact ? &*exact : nullptr, options.lines, monitor);
+        used = options.direct == Direct::exact && exact ? &*exact : nullptr;
+        if (options.direct == Direct::sampled)
+            for (const SurfaceId s : emitters(scene)) light.sources.emplace_back(scene, s);
+    }
+
+    std::optional<DirectLight> exact;
+    const DirectLight* used = nullptr;  ///< null: sampled
+    EmittedLight light;
+    std::vector<Discontinuity> lines;
+};
+
+/// The patches of one mesh, solved.
+struct PatchSolution {
+    RadiositySystem system;
+    Radiosity B;
+    SolveReport report;
+    std::size_t rays = 0;
+};
+
+/// Solves (I − diag(ρ)F)B = E with all bounces. Where the emitters' light is known exactly, for the reflected part:
+/// R = ρ H_direct + ρ F R.
+PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& options, Stages& stages)
+{
+    PatchSolution solution;
+    const std::size_t n = exchange.mesh.patch_count();
+    solution.system = stages.run("assemble", &StageSeconds::assemble, n, [&](const WorkMonitor& monitor) {
+        RadiositySystem assembled = assemble(exchange, options.form_factors, monitor);
+        if (options.final.solver == Solver::conjugate_gradient) make_reciprocal(assembled, exchange.scene.closed);
+        return assembled;
+    });
+    RadiositySystem& system = solution.system;
+    const Radiosity emission = system.E;
+    solution.B = emission;
+    if (exchange.direct)
+        for (std::size_t i = 0; i < n; ++i) {
+            const PatchId p(i);
+            solution.B[p] = Rgb(0.0);
+            system.E[p] = system.rho[p] * system.direct[p];
+        }
+    solution.report = stages.run("solve", &StageSeconds::solve, n, [&](const WorkMonitor& monitor) {
+        return solve(system, solution.B, options.final, monitor);
+    });
+    if (exchange.direct) {
+        system.E = emission;
+        for (std::size_t i = 0; i < n; ++i) solution.B[PatchId(i)] += emission[PatchId(i)];
+    }
+    solution.rays = system.F.rays + solution.report.rays;
+    return solution;
+}
+
+/// The emitters' light found anew at each point, and the indirect light there.
+LightAtPoints light_of(const Exchange& exchange, const EmittedLight& emitted, const IndirectLight& indirect,
+                       const GatherOptions& options)
+{
+    return [&](std::span<const SurfacePoint> points, const WorkMonitor& monitor) {
+        GatheredLight found = emitted.at(exchange, points, options, monitor);
+        tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+            if (exchange.scene.material_of(points[i].surface).reflects())
+                found.irradiance[i] += indirect.at(exchange.scene, points[i]);
+        });
+        return found;
+    };
+}
+
+IndirectOptions indirect_options(const AdaptiveOptions& options)
+{
+    return {.target_error = options.target_error,
+            .max_elements = options.max_elements,
+            .rays = options.gather.rays,
+            .rough_rays = options.estimate.rays,
+            .directions = options.form_factors.directions,
+            .gather = options.gather,
+            .mark = {}};
 }
 
 bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const RefinementPlan& plan, int cycle,
@@ -187,36 +167,25 @@ Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
     return cycle == 0 ? Stage::rough : Stage::adaptive;
 }
 
-bool uses_lines(const AdaptiveOptions& options)
-{
-    return options.refine == Refine::discontinuity || options.refine == Refine::both;
-}
-
-/// The emitters' light, as far as it is asked for, and where it breaks off. Depends on the scene alone.
-struct Emitted {
-    Emitted(const Scene& scene, const AdaptiveOptions& options, const AdaptiveObservers& observers)
-    {
-        const WorkMonitor monitor{observers.stop, {}};
-        if (options.direct == Direct::exact || uses_lines(options)) exact = emitters_light(scene, monitor);
-        if (observers.on_progress && uses_lines(options)) observers.on_progress({.stage = "lines"});
-        if (uses_lines(options)) lines = discontinuities(scene, light(), options.lines, monitor);
-    }
-    const DirectLight* light() const { return exact ? &*exact : nullptr; }
-
-    std::optional<DirectLight> exact;
-    std::vector<Discontinuity> lines;
-};
-
-RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const ErrorEstimate& error,
+RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const Radiosity& B, const ErrorEstimate& error,
                          std::span<const Discontinuity> lines, const AdaptiveOptions& options)
 {
     RefinementPlan plan;
     if (options.refine == Refine::intensity || options.refine == Refine::both)
-        plan = mark(scene, mesh, error, options.mark);
+        plan = mark(scene, mesh, B, error, options.mark);
     if (uses_lines(options))
         plan.lines =
             worthwhile_lines(scene, mesh, error, lines, options.max_elements, options.target_error, options.lines);
     return plan;
+}
+
+PatchMesh next_mesh(const Scene& scene, const PatchMesh& mesh, const RefinementPlan& plan,
+                    const AdaptiveOptions& options)
+{
+    MeshingOptions meshing = options.meshing;
+    meshing.max_elements = options.max_elements;
+    return options.refine == Refine::discontinuity ? triangulate(scene, meshing, plan.lines)
+                                                   : refined(scene, mesh, plan, meshing);
 }
 
 }  // namespace
@@ -225,51 +194,86 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
                                   const AdaptiveObservers& observers, std::optional<AdaptiveStart> start)
 {
     const RayCaster caster(scene);
+    Stages stages(observers);
     const auto begin = Clock::now();
     const Emitted emitted(scene, options, observers);
-    const DirectLight* direct = options.direct == Direct::exact ? emitted.light() : nullptr;
-    const std::vector<Discontinuity>& lines = emitted.lines;
-    PatchMesh mesh = start ? std::move(start->mesh) : first_mesh(scene, options);
-    Radiosity B = start ? std::move(start->B) : emittance(scene, mesh);
-    double meshing = seconds_since(begin);  // of the mesh that the next cycle works on
+    const PatchMesh uniform = first_mesh(scene, options);
+    const PatchLocator uniform_locator(uniform);
+    const Exchange coarse{scene, caster, uniform, uniform_locator, emitted.used};
+    stages.seconds.mesh = seconds_since(begin);
+    const PatchSolution patches = solve_patches(coarse, options, stages);
+    std::size_t rays = patches.rays;
 
+    // What lights the nodes of a mesh: emitters and indirect light, or, on the uniform mesh alone, rays to its patches.
+    std::optional<IndirectLight> indirect;
+    if (options.refine != Refine::none) {
+        indirect =
+            stages.run("indirect", &StageSeconds::gather, uniform.patch_count(), [&](const WorkMonitor& monitor) {
+                return solve_indirect({coarse, patches.system, patches.B}, emitted.light, indirect_options(options),
+                                      monitor);
+            });
+        rays += indirect->rays;
+    }
+
+    PatchMesh mesh = start ? std::move(start->mesh) : PatchMesh(scene, uniform.arrays());
     for (int cycle = start ? start->cycle : 0;; ++cycle) {
-        Cycle work(scene, caster, direct, mesh, cycle, options, observers);
-        work.seconds.mesh = meshing;
+        stages.cycle = cycle;
+        const PatchLocator locator(mesh);
+        const Exchange exchange{scene, caster, mesh, locator, emitted.used};
+        const auto lit_with = [&](int gather_rays) -> LightAtPoints {
+            if (indirect) return light_of(exchange, emitted.light, *indirect, options.gather);
+            GatherOptions gather = options.gather;
+            gather.rays = gather_rays;
+            return light_from_patches(coarse, patches.B, gather);
+        };
         RefinementPlan plan;
         if (start) {  // this cycle was observed by the run that is continued
-            plan = plan_next(scene, mesh, start->error, lines, options);
+            plan = plan_next(scene, mesh, start->B, start->error, emitted.lines, options);
             start.reset();
         } else {
-            Solved solved = options.refine == Refine::none ? work.solve_tightly(B) : work.solve_roughly(B);
-            Evaluation evaluation = work.evaluate(B);
-            plan = plan_next(scene, mesh, evaluation.error, lines, options);
+            Evaluation evaluation =
+                stages.run("estimate", &StageSeconds::estimate, mesh.patch_count(), [&](const WorkMonitor& monitor) {
+                    return evaluate(exchange, lit_with(options.estimate.rays), options.estimate.indicator,
+                                    options.gather.crease_angle, indirect ? indirect->error() : 0, monitor);
+                });
+            rays += evaluation.rays;
+            Radiosity B = cycle == 0 ? patches.B : patch_means(mesh, evaluation.vertex_B);
+            plan = plan_next(scene, mesh, B, evaluation.error, emitted.lines, options);
             const bool last = finished(mesh, evaluation.error, plan, cycle, options);
-            if (last && options.refine != Refine::none) solved = work.solve_tightly(B);
-
-            const VertexRadiosity& vertex_B = last ? solved.vertex_B : evaluation.vertex_B;
+            Reconstruction nodes{std::move(evaluation.vertex_B), {}, 0};
+            if (last && (!indirect || options.elements == Elements::quadratic)) {
+                const int vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
+                nodes =
+                    stages.run("gather", &StageSeconds::gather, mesh.patch_count(), [&](const WorkMonitor& monitor) {
+                        return reconstruct(exchange, lit_with(vertex_rays), options.gather.crease_angle, monitor,
+                                           options.elements);
+                    });
+                rays += nodes.rays;
+            }
+            const EnergyBalance energy =
+                cycle == 0 || !last
+                    ? energy_balance(patches.system, patches.B)
+                    : energy_balance(patches.system, prolong(uniform, B, overlap(mesh, locator, uniform)));
             if (observers.on_step)
-                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, vertex_B, solved.middle_B,
-                                   solved.report, evaluation.error, solved.energy,
+                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, nodes.B, nodes.middle_B,
+                                   patches.report, evaluation.error, energy,
                                    last ? 0 : plan.bisections.size() + plan.lines.size(),
-                                   count_lines(scene, mesh, lines), work.rays, work.seconds});
+                                   count_lines(scene, mesh, emitted.lines), std::exchange(rays, 0), stages.seconds});
+            stages.seconds = {};
             if (last) {
                 const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
                 return {std::move(mesh),
                         std::move(B),
-                        std::move(solved.vertex_B),
-                        std::move(solved.middle_B),
+                        std::move(nodes.B),
+                        std::move(nodes.middle_B),
                         std::move(evaluation.error),
-                        solved.energy,
-                        solved.report,
-                        solved.report.converged && met};
+                        energy,
+                        patches.report,
+                        patches.report.converged && met};
             }
         }
-        work.seconds.mesh = 0;
-        Refinement refined = work.refine(plan);
-        meshing = work.seconds.mesh;
-        B = prolong(refined.mesh, B, refined.transfer);
-        mesh = std::move(refined.mesh);
+        mesh = stages.run("mesh", &StageSeconds::mesh, mesh.patch_count(),
+                          [&](const WorkMonitor&) { return next_mesh(scene, mesh, plan, options); });
     }
 }
 

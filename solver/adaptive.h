@@ -4,7 +4,7 @@
 #include "meshing/refinement.h"
 #include "solver/discontinuities.h"
 #include "solver/estimate.h"
-#include "solver/gather.h"
+#include "solver/indirect_light.h"
 #include "solver/progress.h"
 #include "solver/radiosity.h"
 #include "solver/solve.h"
@@ -24,19 +24,12 @@ enum class Refine {
     both            ///< lines first, then intensity
 };
 
-enum class Direct {
-    exact,   ///< emitters clipped by what hides them, Lambert's formula; no noise
-    sampled  ///< by rays, like all else
-};
-
 /// Everything solve_adaptively needs to know.
 struct AdaptiveOptions {
     MeshingOptions meshing;  ///< of the first, uniform mesh (with Refine::none: the only one)
     FormFactorOptions form_factors;
-    SolveOptions rough{
-        .solver = Solver::progressive, .tolerance = 0.5, .max_sweeps = 1, .ambient = true};  ///< before the last cycle
-    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};                   ///< on the last mesh
-    GatherOptions gather;
+    SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};  ///< of the patches of the uniform mesh
+    GatherOptions gather{.rays = 0};  ///< no rays: as many as the error asks for; on a uniform mesh 512
     EstimateOptions estimate;
     MarkOptions mark;
     LineOptions lines;
@@ -60,8 +53,8 @@ struct AdaptiveStep {
     int cycle = 0;
     Stage stage = Stage::rough;
     const PatchMesh& mesh;
-    const Radiosity& B;               ///< per patch
-    const VertexRadiosity& vertex_B;  ///< the linear reconstruction; before the last cycle from the estimate's few rays
+    const Radiosity& B;               ///< per patch: solved on the uniform mesh, else the means of the linear solution
+    const VertexRadiosity& vertex_B;  ///< the linear reconstruction
     const MidpointRadiosity& middle_B;  ///< of quadratic elements, in the last cycle; empty: linear elements
     const SolveReport& solved;
     const ErrorEstimate& error;
@@ -99,10 +92,11 @@ struct AdaptiveSolution {
     bool converged = false;  ///< the linear solve met its tolerance, and target_error, if asked for, was met
 };
 
-/// THE loop: uniform mesh → rough radiosity → evaluation → intensity-adaptive mesh → … → final radiosity.
-/// Cycles before the last solve with a quarter of the rays; the last mesh is solved again with all of them.
-/// The answer depends on scene and options only, not on the number of threads.
-/// Throws Interrupted when observers.stop is requested; the steps already observed are whole.
+/// THE loop: uniform mesh → rough radiosity of its patches → indirect light on a mesh of its own → evaluation →
+/// adaptive mesh → … → final radiosity. Each mesh is lit by the emitters' light, found anew at its nodes, and the
+/// indirect light, which is solved once. Refine::none: the uniform mesh alone, its light gathered from its patches. The
+/// answer depends on scene and options only, not on the number of threads. Throws Interrupted when observers.stop is
+/// requested; the steps already observed are whole.
 AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,
                                   const AdaptiveObservers& observers = {},
                                   std::optional<AdaptiveStart> start = std::nullopt);

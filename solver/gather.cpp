@@ -39,6 +39,13 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
     return result;
 }
 
+LightAtPoints light_from_patches(const Exchange& exchange, const Radiosity& B, const GatherOptions& options)
+{
+    return [&exchange, &B, options](std::span<const SurfacePoint> points, const WorkMonitor& monitor) {
+        return gather_irradiance(exchange, B, points, options, monitor);
+    };
+}
+
 namespace {
 
 /// Toward `inside` by a part of the way, but by `least` (of the diameter), but never more than a quarter of it.
@@ -181,17 +188,27 @@ VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> 
     return B;
 }
 
-Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
+Radiosity patch_means(const PatchMesh& mesh, const VertexRadiosity& B)
+{
+    Radiosity mean(mesh.patch_count());
+    for (const PatchId p : mesh.patches()) {
+        const auto c = mesh.corners(p);
+        mean[p] = (B[c[0]] + B[c[1]] + B[c[2]]) / 3.0;
+    }
+    return mean;
+}
+
+Reconstruction reconstruct(const Exchange& exchange, const LightAtPoints& light, double crease_angle,
                            const WorkMonitor& monitor, Elements elements)
 {
     const bool quadratic = elements == Elements::quadratic;
     const ElementPoints nodes = quadratic ? element_points(exchange) : ElementPoints{vertex_points(exchange), {}};
-    GatheredLight gathered = gather_irradiance(exchange, B, nodes.points, options, monitor);
-    share_irradiance(exchange, options.crease_angle, gathered.irradiance);
+    GatheredLight gathered = light(nodes.points, monitor);
+    share_irradiance(exchange, crease_angle, gathered.irradiance);
     Reconstruction result{linear_radiosity(exchange, gathered.irradiance), {}, gathered.rays};
     if (!quadratic) return result;
     const PatchMesh& mesh = exchange.mesh;
-    share(exchange.scene, options.crease_angle, border_middles(mesh, nodes), gathered.irradiance);
+    share(exchange.scene, crease_angle, border_middles(mesh, nodes), gathered.irradiance);
     result.middle_B = MidpointRadiosity(mesh.patch_count());
     for (const PatchId p : mesh.patches()) {
         const Material& material = exchange.scene.material_of(mesh.surface(p));

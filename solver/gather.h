@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,13 +31,20 @@ struct SurfacePoint {
 /// H in W/m² at points, and the rays it took.
 struct GatheredLight {
     std::vector<Rgb> irradiance;
+    std::vector<Rgb> again;  ///< by as many other rays, independently; empty where that isn't done
     std::size_t rays = 0;
 };
+
+/// Whatever tells the irradiance at points of the surfaces. May throw Interrupted.
+using LightAtPoints = std::function<GatheredLight(std::span<const SurfacePoint>, const WorkMonitor&)>;
 
 /// Irradiance at points from the patch solution B: one more bounce. Points of one surface share their directions,
 /// so that what the rays don't resolve varies smoothly over it. Throws Interrupted.
 GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
                                 const GatherOptions& options, const WorkMonitor& monitor = {});
+
+/// The same as whatever tells the irradiance; keeps references to `exchange` and B.
+LightAtPoints light_from_patches(const Exchange& exchange, const Radiosity& B, const GatherOptions& options);
 
 /// A place of a border, moved toward `inside` of its surface: what is there on this side.
 SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter);
@@ -52,19 +60,22 @@ struct ElementPoints {
 };
 ElementPoints element_points(const Exchange& exchange);
 
-/// B = E + ρ H gathered at every node of the elements, never averaged from neighbours, never across a surface's
-/// border; except that facets of a curved object share their irradiance at common nodes, within one material
-/// and the crease angle. The vertices' values don't depend on `elements`. Throws Interrupted.
+/// B = E + ρ H at every node of the elements, never averaged from neighbours, never across a surface's border; except
+/// that facets of a curved object share their irradiance at common nodes, within one material and the crease angle
+/// (degrees). The vertices' values don't depend on `elements`. Throws Interrupted.
 struct Reconstruction {
     VertexRadiosity B;
     MidpointRadiosity middle_B;  ///< empty: linear elements
     std::size_t rays = 0;
 };
-Reconstruction reconstruct(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
+Reconstruction reconstruct(const Exchange& exchange, const LightAtPoints& light, double crease_angle,
                            const WorkMonitor& monitor = {}, Elements elements = Elements::linear);
 
 /// B = E + ρ H at every vertex; `irradiance` begins with one value a vertex.
 VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> irradiance);
+
+/// The means of a linear solution over the patches of its own mesh.
+Radiosity patch_means(const PatchMesh& mesh, const VertexRadiosity& B);
 
 /// Averages irradiance over vertices at one place whose surfaces have one material and normals within the crease
 /// angle of the vertex's own; never over the copies of one surface's contact vertex.

@@ -17,6 +17,12 @@ using VertexRadiosity = VertexField<Rgb>;
 /// Two patches have the same value at their common edge, except across a contact line.
 using MidpointRadiosity = PatchField<std::array<Rgb, 3>>;
 
+/// B on quadratic elements.
+struct QuadraticRadiosity {
+    VertexRadiosity at_vertices;
+    MidpointRadiosity at_middles;
+};
+
 enum class Elements {
     linear,    ///< nodes at the vertices
     quadratic  ///< and at the middles of edges

@@ -103,13 +103,25 @@ struct ValidateCommand {
     int threads = 0;
 };
 
+struct VerifyCommand {
+    std::string run;
+    WhichCycle cycle;
+    bool all_cycles = false;  ///< the others beside the last
+    std::size_t points = 2000;
+    std::uint32_t most_paths = 4096;  ///< from each point
+    std::uint64_t seed = 1;
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+
 /// What only prints: --help and --version.
 struct PrintCommand {
     std::string text;
 };
 
 using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
-                             FormFactorsCommand, ValidateCommand, PrintCommand>;
+                             VerifyCommand, FormFactorsCommand, ValidateCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

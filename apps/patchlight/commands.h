@@ -21,6 +21,7 @@ int run_command(const InspectCommand& command, Session& session);
 int run_command(const RenderCommand& command, Session& session);
 int run_command(const ProbeCommand& command, Session& session);
 int run_command(const ExportCommand& command, Session& session);
+int run_command(const VerifyCommand& command, Session& session);
 int run_command(const FormFactorsCommand& command, Session& session);
 int run_command(const ValidateCommand& command, Session& session);
 int run_command(const PrintCommand& command, Session& session);

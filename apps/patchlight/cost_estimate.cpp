@@ -35,18 +35,19 @@ std::string in_gib(double bytes)
     return gib >= 1 ? fmt::format("{:.1f} GiB", gib) : fmt::format("{:.2g} GiB", gib);
 }
 
-/// At the end, when all rows of the largest mesh are held.
+/// The mesh of so many elements, and the rows of the uniform one: of an automatic one to be refined a quarter at most.
 double solve_bytes(double elements, const AdaptiveOptions& options)
 {
     const FormFactorMethod method = options.form_factors.method;
     const bool sampled = method == FormFactorMethod::hemisphere || method == FormFactorMethod::hemicube;
+    const bool automatic = options.meshing.max_edge <= 0 && options.meshing.max_elements == 0;
+    const auto patches = static_cast<std::size_t>(automatic ? std::ceil(elements / 4) : elements);
     // Rows that aren't reciprocal are made so beside three copies, or transposed for their columns.
     const double copies = !sampled                                             ? 1
                           : options.final.solver == Solver::conjugate_gradient ? 4
                           : options.final.solver == Solver::progressive        ? 2
                                                                                : 1;
-    return copies * matrix_bytes(method, static_cast<std::size_t>(elements), options.form_factors) +
-           mesh_bytes(elements);
+    return copies * matrix_bytes(method, patches, options.form_factors) + mesh_bytes(elements);
 }
 
 /// Elements that fit, with two digits, below `most`.
@@ -77,10 +78,10 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     const double elements = elements_of(scene, options);
     CostEstimate cost;
     cost.elements = static_cast<std::size_t>(std::min(elements, 1e18));
-    // Cycles grow geometrically: together about three times the last one; half as many vertices as elements, and three
-    // edges for two of them.
-    const double middles = options.elements == Elements::quadratic ? 1.5 * elements : 0;
-    cost.rays = 3 * elements * (options.form_factors.rays + 0.5 * options.gather.rays) + middles * options.gather.rays;
+    // Rays are traced for the patches of the uniform mesh, and from the vertices where indirect light is gathered: a
+    // quarter of the elements.
+    const double vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
+    cost.rays = 0.25 * elements * (options.form_factors.rays + vertex_rays + 6 * options.estimate.rays);
     cost.bytes = solve_bytes(static_cast<double>(cost.elements), options);
     return cost;
 }

@@ -4,6 +4,7 @@
 #include "apps/patchlight/form_factor_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/usage_error.h"
+#include "apps/patchlight/verify_arguments.h"
 
 #include <fmt/format.h>
 
@@ -63,6 +64,12 @@ void add_meshing(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--indicator", t.indicator, "what is taken for the error of a patch")
         ->check(CLI::IsMember(words(indicator_names())))
         ->capture_default_str();
+    app.add_option("--local", o.mark.local,
+                   "of what counts as a patch's error, the part that is relative to its own light instead of the whole "
+                   "scene's: more elements in dark places")
+        ->check(number_between(0, 1))
+        ->type_name("SHARE")
+        ->capture_default_str();
     app.add_option("--marking", t.marking, "how patches to refine are chosen")
         ->check(CLI::IsMember(words(marking_names())))
         ->capture_default_str();
@@ -114,8 +121,10 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
         ->check(whole_between(16, 65536))
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--vertex-rays", o.gather.rays, "rays per vertex of the final gathering")
-        ->check(whole_between(16, 65536))
+    app.add_option("--vertex-rays", o.gather.rays,
+                   "rays per vertex where indirect light is gathered; 0: as many as the error asks for, 512 with "
+                   "--refine none")
+        ->check(whole_between(0, 65536))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--crease-angle", o.gather.crease_angle,
@@ -249,12 +258,13 @@ struct Parser {
     RenderCommand render;
     ProbeCommand probe;
     ExportCommand exported;
+    VerifyCommand verify;
     FormFactorsCommand form_factors;
     ValidateCommand validate;
     Texts solve_texts, render_texts, probe_texts;
     SceneTexts inspect_texts;
     FormFactorTexts form_factor_texts;
-    std::string validate_method;
+    std::string validate_method, verify_cycle = "last";
 
     Parser()
     {
@@ -270,6 +280,8 @@ struct Parser {
         add_render(*app.add_subcommand("render", "A picture of a stored run"), render, render_texts);
         add_probe();
         add_export();
+        add_verify(*app.add_subcommand("verify", "The error of a stored run, measured by path tracing"), verify,
+                   verify_cycle);
         add_form_factors(*app.add_subcommand("formfactors", "Form factors between two objects, or of all patches"),
                          form_factors, form_factor_texts);
         add_validate(*app.add_subcommand("validate", "Every form-factor method against known answers"), validate,
@@ -330,8 +342,8 @@ struct Parser {
     /// CLI11 would only say that a command is missing.
     static void check_command(int argc, const char* const* argv)
     {
-        static const std::vector<std::string> commands{"demo",  "inspect", "solve",       "render",
-                                                       "probe", "export",  "formfactors", "validate"};
+        static const std::vector<std::string> commands{"demo",   "inspect", "solve",       "render",  "probe",
+                                                       "verify", "export",  "formfactors", "validate"};
         const std::string word = argc > 1 ? argv[1] : "";
         if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {
             throw UsageError("usage",
@@ -359,6 +371,10 @@ struct Parser {
         }
         if (app.got_subcommand("export")) {
             return exported;
+        }
+        if (app.got_subcommand("verify")) {
+            finish_verify(verify, verify_cycle);
+            return verify;
         }
         if (app.got_subcommand("formfactors")) {
             finish_form_factors(form_factors, form_factor_texts);

@@ -147,6 +147,7 @@ TEST(Architecture, IncludesRunDownwardsOnly)
         {"solver", {"meshing", "formfactor"}},
         {"apps/imaging", core},
         {"apps/run", core},
+        {"apps/verification", {"meshing", "formfactor"}},
         {"apps/study", {"meshing", "formfactor", "solver", "apps/imaging", "apps/run"}},
         {"apps/report", {"meshing", "formfactor", "solver", "apps/imaging", "apps/run", "apps/study"}},
         {"apps/python", {"meshing", "formfactor", "solver", "apps"}},
@@ -163,6 +164,19 @@ TEST(Architecture, IncludesRunDownwardsOnly)
             const bool allowed = std::ranges::any_of(
                 rule->second, [&](const std::string& r) { return target == r || starts_with(target, r + "/"); });
             EXPECT_TRUE(allowed) << source.path << " includes " << header;
+        }
+    }
+}
+
+TEST(Architecture, VerifyingSharesNothingWithWhatItVerifies)
+{
+    const std::set<std::string> shared{"formfactor/ray_caster.h", "formfactor/random_numbers.h",
+                                       "formfactor/scrambled_points.h", "formfactor/work_monitor.h"};
+    for (const Source& source : sources()) {
+        if (room_of(source.path) != "apps/verification") continue;
+        for (const std::string& header : source.includes) {
+            const bool is_theirs = room_of(header) == "formfactor" || starts_with(header, "meshing/patch");
+            EXPECT_TRUE(!is_theirs || shared.contains(header)) << source.path << " includes " << header;
         }
     }
 }

@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, RefusedArguments,
 
 INSTANTIATE_TEST_SUITE_P(
     NotBuiltYet, RefusedArguments,
-    ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"}, std::vector<std::string>{"verify", "a"},
+    ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"},
                       std::vector<std::string>{"report", "a", "-o", "b"}, std::vector<std::string>{"study", "run", "a"},
                       solving({"--refine", "quadratic"}), solving({"--solver", "hierarchical"}),
                       solving({"--form-factors", "monte-carlo"}), solving({"--form-factors", "closed-form"}),
@@ -75,6 +75,17 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--cycle", "-1"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--exposure", "bright"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--fov", "0"}));
+
+INSTANTIATE_TEST_SUITE_P(Verify, RefusedArguments,
+                         ::testing::Values(std::vector<std::string>{"verify"},
+                                           std::vector<std::string>{"verify", "a", "--points", "0"},
+                                           std::vector<std::string>{"verify", "a", "--points", "1e3"},
+                                           std::vector<std::string>{"verify", "a", "--paths", "7"},
+                                           std::vector<std::string>{"verify", "a", "--cycle", "-1"},
+                                           std::vector<std::string>{"verify", "a", "--cycle", "middle"},
+                                           std::vector<std::string>{"verify", "a", "--seed", "-1"},
+                                           std::vector<std::string>{"verify", "a", "--threads", "0"},
+                                           std::vector<std::string>{"verify", "a", "b"}));
 
 std::vector<std::string> factors(std::vector<std::string> words)
 {
@@ -195,6 +206,20 @@ TEST(Arguments, FormFactorsBetweenObjectsAndOfAllPatchesHaveTheirOwnDefaults)
     const auto edge = std::get<FormFactorsCommand>(parse(factors({"--max-edge", "50", "--unit", "cm"})));
     EXPECT_DOUBLE_EQ(edge.meshing.max_edge, 0.5);
     EXPECT_EQ(edge.meshing.max_elements, 0U);
+}
+
+TEST(Arguments, VerifyTakesACycleAndHasDefaults)
+{
+    const auto plain = std::get<VerifyCommand>(parse({"verify", "run"}));
+    EXPECT_EQ(plain.points, 2000U);
+    EXPECT_EQ(plain.cycle.kind, WhichCycle::Kind::last);
+    const auto chosen = std::get<VerifyCommand>(
+        parse({"verify", "run", "--points", "50", "--paths", "64", "--cycle", "3", "--seed", "9", "--json"}));
+    EXPECT_EQ(chosen.points, 50U);
+    EXPECT_EQ(chosen.most_paths, 64U);
+    EXPECT_EQ(chosen.cycle.number, 3);
+    EXPECT_EQ(chosen.seed, 9U);
+    EXPECT_TRUE(chosen.json);
 }
 
 TEST(Arguments, ValidateTakesOneMethodOrAll)

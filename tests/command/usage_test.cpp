@@ -15,7 +15,7 @@ class UsageTest : public CommandTest {};
 TEST_F(UsageTest, EndsWithTwoAndAMessageBeforeAnyFileIsLookedAt)
 {
     for (const std::vector<std::string>& words : {std::vector<std::string>{},
-                                                  {"verify", "run"},
+                                                  {"verify"},
                                                   {"solve", "room.obj"},
                                                   {"solve", "room.obj", "-o", "run", "--threads", "1e9"},
                                                   {"solve", "room.obj", "-o", "run", "--refine", "lines"}}) {
@@ -39,7 +39,8 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 
 TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 {
-    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "export", "formfactors", "validate"}) {
+    for (const char* command :
+         {"demo", "inspect", "solve", "render", "probe", "verify", "export", "formfactors", "validate"}) {
         std::istringstream lines(run({command, "--help"}).out);
         for (std::string line, next; std::getline(lines, line);) {
             // An option's first word, its values and its text: with a default, or required, or with [what is done
@@ -61,11 +62,11 @@ TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 
 TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
 {
-    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "export"}) {
+    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "verify", "export"}) {
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
-        for (const char* absent : {"hierarchical", "vtu", "verify", "false-color", "--mesh "}) {
+        for (const char* absent : {"hierarchical", "vtu", "compare", "false-color", "--mesh "}) {
             EXPECT_THAT(help.out, Not(HasSubstr(absent))) << command;
         }
     }

@@ -89,9 +89,9 @@ TEST(Reconstruct, QuadraticElementsKeepTheVerticesOfLinearOnesAndAgreeAlongEdges
     const auto direct = emitters_light(scene);
     const Exchange exchange{scene, caster, mesh, locator, &*direct};
     const Radiosity B = emittance(scene, mesh);
-    const GatherOptions few{.rays = 16};
-    const Reconstruction linear = reconstruct(exchange, B, few);
-    const Reconstruction both = reconstruct(exchange, B, few, {}, Elements::quadratic);
+    const LightAtPoints light = light_from_patches(exchange, B, {.rays = 16});
+    const Reconstruction linear = reconstruct(exchange, light, 30);
+    const Reconstruction both = reconstruct(exchange, light, 30, {}, Elements::quadratic);
     EXPECT_TRUE(linear.middle_B.empty());
     EXPECT_EQ(both.B, linear.B);
     DirectLight::Scratch scratch;

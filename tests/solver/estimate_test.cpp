@@ -23,6 +23,12 @@ struct Flat {
     }
 };
 
+/// Light that is everywhere the same.
+Radiosity even(const PatchMesh& mesh)
+{
+    return Radiosity(mesh.patch_count(), Rgb(1));
+}
+
 ErrorEstimate rising(const PatchMesh& mesh)
 {
     ErrorEstimate error;
@@ -41,7 +47,7 @@ TEST(Mark, DoerflerTakesTheFewestPatchesThatHoldTheShare)
     const Flat flat;
     const ErrorEstimate error = rising(flat.mesh);
     for (const double share : {0.1, 0.5, 0.9, 1.0}) {
-        const RefinementPlan plan = mark(flat.scene, flat.mesh, error, {.share = share, .least = 0});
+        const RefinementPlan plan = mark(flat.scene, flat.mesh, even(flat.mesh), error, {.share = share, .least = 0});
         double all = 0, held = 0;
         for (const double eta : error.eta.values()) all += eta * eta;
         for (const auto& split : plan.bisections) held += error.eta[split.patch] * error.eta[split.patch];
@@ -57,8 +63,8 @@ TEST(Mark, DoerflerTakesTheFewestPatchesThatHoldTheShare)
 TEST(Mark, FixedFractionTakesThatManyPatches)
 {
     const Flat flat;
-    const RefinementPlan plan =
-        mark(flat.scene, flat.mesh, rising(flat.mesh), {.marking = Marking::fixed_fraction, .share = 0.25});
+    const RefinementPlan plan = mark(flat.scene, flat.mesh, even(flat.mesh), rising(flat.mesh),
+                                     {.marking = Marking::fixed_fraction, .share = 0.25});
     EXPECT_NEAR(static_cast<double>(plan.bisections.size()), 0.25 * static_cast<double>(flat.mesh.patch_count()), 1);
 }
 
@@ -68,14 +74,14 @@ TEST(Mark, NothingWrongNothingToSplit)
     ErrorEstimate error;
     error.eta = PatchField<double>(flat.mesh.patch_count(), 0.0);
     error.edge = PatchField<std::uint8_t>(flat.mesh.patch_count(), 0);
-    EXPECT_TRUE(mark(flat.scene, flat.mesh, error, {}).empty());
+    EXPECT_TRUE(mark(flat.scene, flat.mesh, even(flat.mesh), error, {}).empty());
 }
 
 TEST(Mark, HalvesTheEdgesTheEstimateNames)
 {
     const Flat flat;
     const ErrorEstimate error = rising(flat.mesh);
-    const RefinementPlan plan = mark(flat.scene, flat.mesh, error, {});
+    const RefinementPlan plan = mark(flat.scene, flat.mesh, even(flat.mesh), error, {});
     EXPECT_FALSE(plan.bisections.empty());
     EXPECT_TRUE(plan.lines.empty());
     for (const auto& split : plan.bisections) EXPECT_EQ(split.edge, error.edge[split.patch]);
@@ -88,8 +94,10 @@ TEST(Mark, ATenthOfThePatchesIsSplitInAnyCase)
     ErrorEstimate error = rising(flat.mesh);
     error.eta[PatchId(0)] = 1e9;
     const double n = static_cast<double>(flat.mesh.patch_count());
-    EXPECT_EQ(mark(flat.scene, flat.mesh, error, {.least = 0}).bisections.size(), 1U);
-    EXPECT_NEAR(static_cast<double>(mark(flat.scene, flat.mesh, error, {.least = 0.1}).bisections.size()), 0.1 * n, 1);
+    EXPECT_EQ(mark(flat.scene, flat.mesh, even(flat.mesh), error, {.least = 0}).bisections.size(), 1U);
+    EXPECT_NEAR(
+        static_cast<double>(mark(flat.scene, flat.mesh, even(flat.mesh), error, {.least = 0.1}).bisections.size()),
+        0.1 * n, 1);
 }
 
 TEST(Mark, EdgesBelowTheSmallestStayWhole)
@@ -102,12 +110,36 @@ TEST(Mark, EdgesBelowTheSmallestStayWhole)
     };
     const double smallest = 0.35;
     const RefinementPlan plan =
-        mark(flat.scene, flat.mesh, error, {.share = 1, .smallest = smallest / flat.scene.diameter});
+        mark(flat.scene, flat.mesh, even(flat.mesh), error, {.share = 1, .smallest = smallest / flat.scene.diameter});
     std::size_t longer = 0;
     for (const PatchId p : flat.mesh.patches()) longer += length(p, error.edge[p]) > smallest;
     ASSERT_LT(longer, flat.mesh.patch_count());
     EXPECT_EQ(plan.bisections.size(), longer);
     for (const auto& split : plan.bisections) EXPECT_GT(length(split.patch, split.edge), smallest);
+}
+
+// On one half the light is a tenth as bright: the same error counts for more there, by 1 − local + local · b²/(B² +
+// (.03 b)²), b² the mean square.
+TEST(Mark, ErrorsInDarkPlacesCountRelativeToTheLightThere)
+{
+    const Flat flat;
+    Radiosity B = even(flat.mesh);
+    ErrorEstimate error = rising(flat.mesh);
+    for (const PatchId p : flat.mesh.patches()) {
+        error.eta[p] = 1;
+        if (flat.mesh.centroid(p).x < 0) B[p] = Rgb(0.1);
+    }
+    for (const double local : {0.5, 1.0}) {
+        const RefinementPlan plan = mark(flat.scene, flat.mesh, B, error, {.share = 0.5, .least = 0, .local = local});
+        ASSERT_FALSE(plan.bisections.empty());
+        for (const auto& split : plan.bisections) EXPECT_LT(flat.mesh.centroid(split.patch).x, 0);
+    }
+    // With all errors alike and no regard to light the first patches are taken, wherever they are.
+    const RefinementPlan plan = mark(flat.scene, flat.mesh, B, error, {.share = 1, .least = 0, .local = 0});
+    EXPECT_EQ(plan.bisections.size(), flat.mesh.patch_count());
+    // Weights 1 and b²/(.01 + 9e-4 b²) ≈ 48 for b² = .505: of all, halves hold 48/49 and 1/49.
+    EXPECT_EQ(mark(flat.scene, flat.mesh, B, error, {.share = 0.97, .least = 0, .local = 1}).bisections.size(),
+              mark(flat.scene, flat.mesh, B, error, {.share = 0.9701, .least = 0, .local = 1}).bisections.size());
 }
 
 // ∫|B|² of a linear function over [−1,1]²: B = x has 4/3 for each band.
@@ -126,8 +158,9 @@ TEST(Evaluate, DarkFloorHasNoError)
     const RayCaster caster(flat.scene);
     const PatchLocator locator(flat.mesh);
     for (const Indicator indicator : {Indicator::residual, Indicator::vertex_difference}) {
-        const Evaluation dark = evaluate({flat.scene, caster, flat.mesh, locator}, emittance(flat.scene, flat.mesh),
-                                         {.indicator = indicator}, {});
+        const Exchange exchange{flat.scene, caster, flat.mesh, locator};
+        const Radiosity B = emittance(flat.scene, flat.mesh);
+        const Evaluation dark = evaluate(exchange, light_from_patches(exchange, B, {}), indicator, 30);
         EXPECT_EQ(dark.error.relative, 0);
         EXPECT_EQ(dark.error.total, 0);
     }

@@ -55,7 +55,8 @@ TEST(CornellBox, DirectFactorsOnTheAdaptedMesh)
     const PatchLocator locator(solution.mesh);
     const Exchange exchange{scene, caster, solution.mesh, locator};
     // One bounce from the emitters alone, on the solved mesh's own vertices.
-    const Reconstruction direct = reconstruct(exchange, emittance(scene, solution.mesh), {});
+    const Radiosity emitted = emittance(scene, solution.mesh);
+    const Reconstruction direct = reconstruct(exchange, light_from_patches(exchange, emitted, {}), 30);
     Rgb E(0.0);
     for (const Material& m : scene.materials) E = glm::max(E, m.emission);
     for (const DirectFactor& known : direct_factors) {

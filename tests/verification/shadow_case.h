@@ -93,6 +93,7 @@ public:
         options.iterations = 60;
         options.form_factors.rays = options.gather.rays = 64;  // nothing is seen but the light, and that exactly
         if (refine == Refine::none || refine == Refine::discontinuity) options.meshing.max_elements = elements;
+        options.mark.local = 0;  // the squared error over the surface is what counts here
         return solve_adaptively(scene, options);
     }
 

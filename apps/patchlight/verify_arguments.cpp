@@ -1,0 +1,39 @@
+#include "apps/patchlight/verify_arguments.h"
+
+#include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/scene_arguments.h"
+
+namespace patchlight {
+
+void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
+{
+    app.add_option("run", c.run, "folder of a run")->required()->type_name("RUN");
+    app.add_option("--points", c.points, "at random over all surface that reflects")
+        ->check(whole_between(1, 1'000'000))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--paths", c.most_paths, "from each point at most; fewer where the error is known well enough")
+        ->check(whole_between(8, 100'000'000))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--cycle", cycle, "which cycle: a number, first, last, or all by the same paths")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--seed", c.seed, "of all random numbers")
+        ->check(whole_between(0, 9'000'000'000'000'000'000))
+        ->type_name("N")
+        ->capture_default_str();
+    add_machine(app, c.threads, c.quiet, c.json, "print JSON instead of a summary");
+    app.footer("Paths are traced against the scene's polygons alone, with nothing of the solver's. Intervals are of\n"
+               "95 %; the paths' own noise is not counted as error. L2 is relative to the reflected light of all\n"
+               "surface; RMS to that of each point, where it is at least a thousandth of the mean.\n"
+               "The estimate holds when it is between half the measured error and three times it.");
+}
+
+void finish_verify(VerifyCommand& c, const std::string& cycle)
+{
+    c.all_cycles = cycle == "all";
+    if (!c.all_cycles) c.cycle = cycle_in("--cycle", cycle);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,103 @@
+#include "apps/patchlight/commands.h"
+#include "apps/patchlight/progress_display.h"
+#include "apps/patchlight/verify_report.h"
+#include "solver/element_light.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <optional>
+
+namespace patchlight {
+
+namespace {
+
+/// The run's reconstruction as probing shows it, and its patches' estimates, √(η²/A).
+std::vector<ShownPoint> shown_at(const StoredSolution& stored, const std::vector<DrawnPoint>& points)
+{
+    const PatchLocator locator(stored.mesh);
+    const ElementLight light{stored.mesh, locator, stored.vertex_B, &stored.middle_B};
+    std::vector<ShownPoint> shown(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SurfaceId surface = points[i].surface;
+        const Vec2 q = stored.scene.surface(surface).frame.to_plane(points[i].position);
+        const PatchId patch = locator.locate(surface, static_cast<float>(q.x), static_cast<float>(q.y));
+        if (!patch.valid()) continue;
+        shown[i] = {light.at(patch, q) - stored.scene.material_of(surface).emission,
+                    stored.eta[patch] / std::sqrt(stored.mesh.area(patch))};
+    }
+    return shown;
+}
+
+/// The cycles to verify, the one that was asked for last.
+std::vector<CycleRecord> cycles_of(const OpenedRun& run, const VerifyCommand& command)
+{
+    if (!command.all_cycles) return {record_of(run, command.cycle)};
+    (void)record_of(run, {});  // throws where there is none
+    return run.record.cycles;
+}
+
+Verification trace(const Scene& scene, std::size_t elements, const std::vector<DrawnPoint>& points,
+                   const std::vector<std::vector<ShownPoint>>& shown, const VerifyOptions& options, Session& session)
+{
+    const RayCaster caster(scene);
+    ProgressDisplay display(session.messages);
+    const WorkMonitor monitor{
+        session.interruption.token(), [&](const WorkState& state) {
+            display.show(
+                {.stage = "paths", .cycle = -1, .fraction = state.fraction, .elements = elements, .rays = state.rays});
+        }};
+    return verify_light(scene, caster, points, shown, options, monitor);
+}
+
+int verify(const VerifyCommand& command, Session& session)
+{
+    const OpenedRun run = open_run(command.run);
+    const std::vector<CycleRecord> cycles = cycles_of(run, command);
+    const StoredSolution last = solution_of(run, command.cycle);
+    const VerifyOptions options{command.points, command.most_paths, command.seed, {}};
+    const std::vector<DrawnPoint> points = points_to_verify(last.scene, options);
+    std::vector<std::vector<ShownPoint>> shown;
+    for (std::size_t i = 0; i + 1 < cycles.size(); ++i) {
+        session.interruption.check();
+        shown.push_back(shown_at(solution_of(run, {WhichCycle::Kind::number, cycles[i].cycle}), points));
+    }
+    shown.push_back(shown_at(last, points));
+    session.interruption.check();
+
+    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t cpu_begin = std::clock();
+    const Verification found = trace(last.scene, last.mesh.patch_count(), points, shown, options, session);
+    VerifyReport report{.seed = command.seed, .points = points.size(), .rays = found.rays, .paths = found.paths};
+    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.cpu_seconds = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
+    for (std::size_t i = 0; i < cycles.size(); ++i)
+        report.cycles.push_back(verified_cycle(cycles[i], found.solutions[i]));
+    report.surfaces = errors_by_surface(found.solutions.back().points);
+    write_result(command.json ? json_text(report, last.scene) : summary_text(report, last.scene));
+    session.messages.note(
+        fmt::format("{:.1f} M rays in {:.1f} s", 1e-6 * static_cast<double>(found.rays), report.seconds));
+    return 0;
+}
+
+}  // namespace
+
+int run_command(const VerifyCommand& command, Session& session)
+{
+    session.messages.set_quiet(command.quiet);
+    std::optional<tbb::global_control> threads;
+    if (command.threads > 0) {
+        threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(command.threads));
+    }
+    try {
+        return verify(command, session);
+    } catch (const Interrupted&) {
+        session.messages.note("interrupted");
+        return session.interruption.exit_code();
+    }
+}
+
+}  // namespace patchlight
