@@ -101,9 +101,9 @@ PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& opt
     PatchSolution solution;
     const std::size_t n = exchange.mesh.patch_count();
     solution.system = stages.run("assemble", &StageSeconds::assemble, n, [&](const WorkMonitor& monitor) {
-        RadiositySystem assembled = assemble(exchange, options.form_factors, monitor);
-        if (options.final.solver == Solver::conjugate_gradient) make_reciprocal(assembled, exchange.scene.closed);
-        return assembled;
+        RadiositySystem made = assemble(exchange, options.form_factors, monitor);
+        if (options.final.solver == Solver::conjugate_gradient) make_reciprocal(made, exchange.scene.closed);
+        return made;
     });
     RadiositySystem& system = solution.system;
     const Radiosity emission = system.E;
