@@ -149,7 +149,8 @@ IndirectOptions indirect_options(const AdaptiveOptions& options)
             .rays = options.gather.rays,
             .rough_rays = options.estimate.rays,
             .directions = options.form_factors.directions,
-            .gather = options.gather};
+            .gather = options.gather,
+            .mark = {}};
 }
 
 bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const RefinementPlan& plan, int cycle,

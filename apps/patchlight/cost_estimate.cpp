@@ -35,19 +35,19 @@ std::string in_gib(double bytes)
     return gib >= 1 ? fmt::format("{:.1f} GiB", gib) : fmt::format("{:.2g} GiB", gib);
 }
 
-/// The matrix of the uniform mesh, a quarter of the elements where others follow, and the largest mesh.
+/// The mesh of so many elements, and the rows of the uniform one: of an automatic one to be refined a quarter at most.
 double solve_bytes(double elements, const AdaptiveOptions& options)
 {
-    const double patches = options.refine == Refine::none ? elements : elements / 4;
     const FormFactorMethod method = options.form_factors.method;
     const bool sampled = method == FormFactorMethod::hemisphere || method == FormFactorMethod::hemicube;
+    const bool automatic = options.meshing.max_edge <= 0 && options.meshing.max_elements == 0;
+    const auto patches = static_cast<std::size_t>(automatic ? std::ceil(elements / 4) : elements);
     // Rows that aren't reciprocal are made so beside three copies, or transposed for their columns.
     const double copies = !sampled                                             ? 1
                           : options.final.solver == Solver::conjugate_gradient ? 4
                           : options.final.solver == Solver::progressive        ? 2
                                                                                : 1;
-    return copies * matrix_bytes(method, static_cast<std::size_t>(patches), options.form_factors) +
-           mesh_bytes(elements);
+    return copies * matrix_bytes(method, patches, options.form_factors) + mesh_bytes(elements);
 }
 
 /// Elements that fit, with two digits, below `most`.
