@@ -63,46 +63,6 @@ Vec3 RowSampler::point_of(PatchId patch, float b0, float b1) const
     return s * mesh_.position(c[0]) + t * mesh_.position(c[1]) + (1 - s - t) * mesh_.position(c[2]);
 }
 
-std::size_t RowSampler::shooter_column(PatchId shooter, std::span<double> column, const WorkMonitor& monitor) const
-{
-    RowScratch own;
-    patch_row(shooter, own);
-    PatchField<double> row(mesh_.patch_count(), 0.0);
-    for (std::size_t k = 0; k < own.row.patches.size(); ++k) row[own.row.patches[k]] = own.row.factors[k];
-
-    const SurfaceId surface = mesh_.surface(shooter);
-    const auto c = mesh_.corners(shooter);
-    const std::array<std::array<Vec3, 3>, 1> triangle{
-        {{mesh_.position(c[0]), mesh_.position(c[1]), mesh_.position(c[2])}}};
-    const Source source(surface, scene_.surface(surface).frame.n, triangle);
-    const HemisphereSet& origins = sets_.front();
-    // An emitter's shadows are what is seen; those of the many other shooters blur each other.
-    const bool emits =
-        std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.surface() == surface; });
-    const int shadow_rays = emits ? options_.shadow_rays : std::min(4, options_.shadow_rays);
-    const std::size_t traced =
-        for_each_row<RowScratch>(mesh_.patch_count(), monitor, [&](std::size_t j, RowScratch& scratch) {
-            const PatchId receiver(j);
-            column[j] = 0;
-            if (mesh_.surface(receiver) == surface) return;
-            const Vec3 n = scene_.surface(mesh_.surface(receiver)).frame.n;
-            scratch.receivers.clear();
-            for (std::size_t k = 0; k < 4; ++k) {
-                const std::size_t i = k * origins.size() / 4;
-                scratch.receivers.push_back({point_of(receiver, origins.b0[i], origins.b1[i]), n});
-            }
-            const double unoccluded = source.unoccluded(mesh_.centroid(receiver), n);
-            if (unoccluded >= options_.small_source) {
-                column[j] = row[receiver] * mesh_.area(shooter) / mesh_.area(receiver);
-                return;
-            }
-            RandomNumbers random(options_.seed, shadow_stream ^ (static_cast<std::uint64_t>(shooter.value) << 32) ^ j);
-            column[j] = visible_factor(caster_, source, scratch.receivers, shadow_rays, random, scratch.shadow);
-            scratch.traced += std::exchange(scratch.shadow.traced, 0);
-        });
-    return traced + own.traced;
-}
-
 void RowSampler::point_row(const Vec3& position, SurfaceId surface, std::uint64_t direction_key,
                            std::uint64_t jitter_key, RowScratch& scratch) const
 {

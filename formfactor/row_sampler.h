@@ -41,11 +41,6 @@ public:
     void point_row(const Vec3& position, SurfaceId surface, std::uint64_t direction_key, std::uint64_t jitter_key,
                    RowScratch& scratch) const;
 
-    /// The column of a shooting patch: F_ji for every patch j into `column` (patch_count values). Receivers that
-    /// see the shooter small see it by Lambert's formula and `shadow_rays` [WallaceElmquistHaines89], the others take
-    /// what the shooter's own row says, F_ji = F_ij A_i/A_j. On all threads. Returns the rays traced.
-    std::size_t shooter_column(PatchId shooter, std::span<double> column, const WorkMonitor& monitor) const;
-
     const std::vector<Source>& sources() const { return sources_; }
 
 private:

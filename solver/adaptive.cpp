@@ -72,12 +72,15 @@ bool uses_lines(const AdaptiveOptions& options)
 
 /// The emitters' light, as far as it is asked for, and where it breaks off. Depends on the scene alone.
 struct Emitted {
-    Emitted(const Scene& scene, const AdaptiveOptions& options, const AdaptiveObservers& observers)
+    Emitted(const Scene& scene, const AdaptiveOptions& options, Stages& stages)
     {
-        const WorkMonitor monitor{observers.stop, {}};
-        if (options.direct == Direct::exact || uses_lines(options)) exact = emitters_light(scene, monitor);
-        if (observers.on_progress && uses_lines(options)) observers.on_progress({.stage = "lines"});
-        if (uses_lines(options)) lines = discontinuities(scene, exact ? &*exact : nullptr, options.lines, monitor);
+        if (options.direct == Direct::exact || uses_lines(options))
+            exact = stages.run("direct", &StageSeconds::mesh, 0,
+                               [&](const WorkMonitor& monitor) { return emitters_light(scene, monitor); });
+        if (uses_lines(options))
+            lines = stages.run("lines", &StageSeconds::mesh, 0, [&](const WorkMonitor& monitor) {
+                return discontinuities(scene, exact ? &*exact : nullptr, options.lines, monitor);
+            });
         used = options.direct == Direct::exact && exact ? &*exact : nullptr;
         if (options.direct == Direct::sampled)
             for (const SurfaceId s : emitters(scene)) light.sources.emplace_back(scene, s);
@@ -186,13 +189,14 @@ PatchField<double> weights_of(const Exchange& coarse, const RadiositySystem& sys
     return importance_weights(system, importance(system, rows_of(system.F), shares));
 }
 
+/// What to change; `counted` is the error as far as it counts for what is looked at.
 RefinementPlan plan_next(const Scene& scene, const PatchMesh& mesh, const Radiosity& B, const ErrorEstimate& error,
-                         const PatchField<double>& weights, std::span<const Discontinuity> lines,
+                         const ErrorEstimate& counted, std::span<const Discontinuity> lines,
                          const AdaptiveOptions& options)
 {
     RefinementPlan plan;
     if (options.refine == Refine::intensity || options.refine == Refine::both)
-        plan = mark(scene, mesh, B, weights.empty() ? error : weighted(error, weights), options.mark);
+        plan = mark(scene, mesh, B, counted, options.mark);
     if (uses_lines(options))
         plan.lines =
             worthwhile_lines(scene, mesh, error, lines, options.max_elements, options.target_error, options.lines);
@@ -208,6 +212,74 @@ PatchMesh next_mesh(const Scene& scene, const PatchMesh& mesh, const RefinementP
                                                    : refined(scene, mesh, plan, meshing);
 }
 
+/// What lights a mesh: the patches of the uniform mesh, solved, and what follows from them. Solved once, whatever the
+/// cycles; depends on scene and options alone.
+class Lighting {
+public:
+    Lighting(const Scene& scene, const RayCaster& caster, const Emitted& emitted, const AdaptiveOptions& options,
+             Stages& stages)
+        : emitted_(emitted), options_(options), mesh_(first_mesh(scene, options)),
+          locator_(mesh_), coarse_{scene, caster, mesh_, locator_, emitted.used},
+          patches_(solve_patches(coarse_, options, stages)), weights_(weights_of(coarse_, patches_.system, options))
+    {
+        if (options.refine == Refine::none) return;
+        const RoughSolution rough{coarse_, patches_.system, patches_.B, weights_.empty() ? nullptr : &weights_};
+        indirect_ = stages.run("indirect", &StageSeconds::gather, mesh_.patch_count(), [&](const WorkMonitor& monitor) {
+            return solve_indirect(rough, emitted.light, indirect_options(options), monitor);
+        });
+    }
+
+    const PatchMesh& uniform_mesh() const { return mesh_; }
+    const PatchSolution& patches() const { return patches_; }
+    std::size_t rays() const { return patches_.rays + (indirect_ ? indirect_->rays : 0); }
+    double indirect_error() const { return indirect_ ? indirect_->error() : 0; }
+    bool needs_gathering() const { return !indirect_; }
+
+    /// The light at a mesh's nodes: the emitters' and the indirect; of the uniform mesh alone by rays to its patches.
+    LightAtPoints on(const Exchange& exchange, int gather_rays) const
+    {
+        if (indirect_) return light_of(exchange, emitted_.light, *indirect_, options_.gather);
+        GatherOptions gather = options_.gather;
+        gather.rays = gather_rays;
+        return light_from_patches(coarse_, patches_.B, gather);
+    }
+
+    /// The error as far as it counts for what is looked at.
+    ErrorEstimate counted(const PatchMesh& mesh, const ErrorEstimate& error) const
+    {
+        return weights_.empty() ? error : weighted(error, weights_on(coarse_.scene, mesh, locator_, weights_));
+    }
+
+    /// Where the light of a solution goes, by the rows of the uniform mesh.
+    EnergyBalance energy(const PatchMesh& mesh, const PatchLocator& locator, const Radiosity& B) const
+    {
+        return energy_balance(patches_.system, prolong(mesh_, B, overlap(mesh, locator, mesh_)));
+    }
+    EnergyBalance energy() const { return energy_balance(patches_.system, patches_.B); }
+
+private:
+    const Emitted& emitted_;
+    const AdaptiveOptions& options_;
+    PatchMesh mesh_;
+    PatchLocator locator_;
+    Exchange coarse_;
+    PatchSolution patches_;
+    PatchField<double> weights_;
+    std::optional<IndirectLight> indirect_;
+};
+
+/// The last mesh's nodes: on the uniform mesh with all rays, and for quadratic elements at the middles of edges, too.
+Reconstruction final_nodes(const Exchange& exchange, const Lighting& lighting, Reconstruction found,
+                           const AdaptiveOptions& options, Stages& stages)
+{
+    if (!lighting.needs_gathering() && options.elements == Elements::linear) return found;
+    const int rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
+    return stages.run("gather", &StageSeconds::gather, exchange.mesh.patch_count(), [&](const WorkMonitor& monitor) {
+        return reconstruct(exchange, lighting.on(exchange, rays), options.gather.crease_angle, monitor,
+                           options.elements);
+    });
+}
+
 }  // namespace
 
 AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,
@@ -215,83 +287,50 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
 {
     const RayCaster caster(scene);
     Stages stages(observers);
-    const auto begin = Clock::now();
-    const Emitted emitted(scene, options, observers);
-    const PatchMesh uniform = first_mesh(scene, options);
-    const PatchLocator uniform_locator(uniform);
-    const Exchange coarse{scene, caster, uniform, uniform_locator, emitted.used};
-    stages.seconds.mesh = seconds_since(begin);
-    const PatchSolution patches = solve_patches(coarse, options, stages);
-    std::size_t rays = patches.rays;
-    const PatchField<double> weights = weights_of(coarse, patches.system, options);
+    const Emitted emitted(scene, options, stages);
+    const Lighting lighting(scene, caster, emitted, options, stages);
+    const SolveReport& solved = lighting.patches().report;
+    // Of a run that is continued they are counted already.
+    std::size_t rays = start ? 0 : lighting.rays();
 
-    // What lights the nodes of a mesh: emitters and indirect light, or, on the uniform mesh alone, rays to its patches.
-    std::optional<IndirectLight> indirect;
-    if (options.refine != Refine::none) {
-        indirect =
-            stages.run("indirect", &StageSeconds::gather, uniform.patch_count(), [&](const WorkMonitor& monitor) {
-                return solve_indirect({coarse, patches.system, patches.B, weights.empty() ? nullptr : &weights},
-                                      emitted.light, indirect_options(options), monitor);
-            });
-        rays += indirect->rays;
-    }
-
-    PatchMesh mesh = start ? std::move(start->mesh) : PatchMesh(scene, uniform.arrays());
+    PatchMesh mesh = start ? std::move(start->mesh) : PatchMesh(scene, lighting.uniform_mesh().arrays());
     for (int cycle = start ? start->cycle : 0;; ++cycle) {
         stages.cycle = cycle;
         const PatchLocator locator(mesh);
         const Exchange exchange{scene, caster, mesh, locator, emitted.used};
-        const auto lit_with = [&](int gather_rays) -> LightAtPoints {
-            if (indirect) return light_of(exchange, emitted.light, *indirect, options.gather);
-            GatherOptions gather = options.gather;
-            gather.rays = gather_rays;
-            return light_from_patches(coarse, patches.B, gather);
-        };
-        const PatchField<double> counts = weights.empty() ? weights : weights_on(scene, mesh, uniform_locator, weights);
         RefinementPlan plan;
         if (start) {  // this cycle was observed by the run that is continued
-            plan = plan_next(scene, mesh, start->B, start->error, counts, emitted.lines, options);
+            plan = plan_next(scene, mesh, start->B, start->error, lighting.counted(mesh, start->error), emitted.lines,
+                             options);
             start.reset();
         } else {
-            Evaluation evaluation =
+            Evaluation found =
                 stages.run("estimate", &StageSeconds::estimate, mesh.patch_count(), [&](const WorkMonitor& monitor) {
-                    return evaluate(exchange, lit_with(options.estimate.rays), options.estimate.indicator,
-                                    options.gather.crease_angle, indirect ? indirect->error() : 0, monitor);
+                    return evaluate(exchange, lighting.on(exchange, options.estimate.rays), options.estimate.indicator,
+                                    options.gather.crease_angle, lighting.indirect_error(), monitor);
                 });
-            rays += evaluation.rays;
-            Radiosity B = cycle == 0 ? patches.B : patch_means(mesh, evaluation.vertex_B);
-            plan = plan_next(scene, mesh, B, evaluation.error, counts, emitted.lines, options);
-            const bool last = finished(mesh, evaluation.error, plan, cycle, options);
-            Reconstruction nodes{std::move(evaluation.vertex_B), {}, 0};
-            if (last && (!indirect || options.elements == Elements::quadratic)) {
-                const int vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
-                nodes =
-                    stages.run("gather", &StageSeconds::gather, mesh.patch_count(), [&](const WorkMonitor& monitor) {
-                        return reconstruct(exchange, lit_with(vertex_rays), options.gather.crease_angle, monitor,
-                                           options.elements);
-                    });
-                rays += nodes.rays;
-            }
-            const EnergyBalance energy =
-                cycle == 0 || !last
-                    ? energy_balance(patches.system, patches.B)
-                    : energy_balance(patches.system, prolong(uniform, B, overlap(mesh, locator, uniform)));
+            Radiosity B = cycle == 0 ? lighting.patches().B : patch_means(mesh, found.vertex_B);
+            plan = plan_next(scene, mesh, B, found.error, lighting.counted(mesh, found.error), emitted.lines, options);
+            const bool last = finished(mesh, found.error, plan, cycle, options);
+            Reconstruction nodes{std::move(found.vertex_B), {}, 0};
+            if (last) nodes = final_nodes(exchange, lighting, std::move(nodes), options, stages);
+            rays += found.rays + nodes.rays;
+            const EnergyBalance energy = last && cycle > 0 ? lighting.energy(mesh, locator, B) : lighting.energy();
             if (observers.on_step)
-                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, nodes.B, nodes.middle_B,
-                                   patches.report, evaluation.error, energy,
-                                   last ? 0 : plan.bisections.size() + plan.lines.size(),
+                observers.on_step({cycle, stage_of(cycle, last, options), mesh, B, nodes.B, nodes.middle_B, solved,
+                                   found.error, energy, last ? 0 : plan.bisections.size() + plan.lines.size(),
                                    count_lines(scene, mesh, emitted.lines), std::exchange(rays, 0), stages.seconds});
             stages.seconds = {};
             if (last) {
-                const bool met = options.target_error <= 0 || evaluation.error.relative <= options.target_error;
+                const bool met = options.target_error <= 0 || found.error.relative <= options.target_error;
                 return {std::move(mesh),
                         std::move(B),
                         std::move(nodes.B),
                         std::move(nodes.middle_B),
-                        std::move(evaluation.error),
+                        std::move(found.error),
                         energy,
-                        patches.report,
-                        patches.report.converged && met};
+                        solved,
+                        solved.converged && met};
             }
         }
         mesh = stages.run("mesh", &StageSeconds::mesh, mesh.patch_count(),
