@@ -9,7 +9,7 @@
 
 namespace patchlight {
 
-enum class Solver { progressive, jacobi, gauss_seidel };
+enum class Solver { progressive, jacobi, gauss_seidel, hierarchical };
 
 /// What is shot first.
 enum class ShootingOrder {
