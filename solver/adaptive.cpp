@@ -1,5 +1,7 @@
 #include "solver/adaptive.h"
 
+#include "solver/hierarchical.h"
+
 #include <chrono>
 
 namespace patchlight {
@@ -122,8 +124,20 @@ public:
     std::size_t rays = 0;
 
 private:
+    Solved solve_on_links(Radiosity& B, const SolveOptions& options, std::uint64_t seed)
+    {
+        const RadiositySystem system =
+            stage("assemble", seconds.assemble, [&](const WorkMonitor&) { return unassembled(exchange_); });
+        const HierarchicalSolution found = stage("solve", seconds.solve, [&](const WorkMonitor& monitor) {
+            return solve_hierarchical(exchange_, system, B, {.tolerance = options.tolerance, .seed = seed}, monitor);
+        });
+        rays += found.rays;
+        return {found.report, found.energy, {}, {}};
+    }
+
     Solved solve(Radiosity& B, const SolveOptions& options, const FormFactorOptions& sampling)
     {
+        if (options.solver == Solver::hierarchical) return solve_on_links(B, options, sampling.seed);
         const bool shooting = options.solver == Solver::progressive;
         // Shooting computes columns on demand; the tight solve assembles all the same, for the energy balance.
         const bool rows = !shooting || &options == &options_.final;

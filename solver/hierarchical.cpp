@@ -124,7 +124,7 @@ private:
         for (int pass = 0; pass < passes; ++pass) {
             const LinkingReport report = links_.refine(light_, most_, monitor_);
             solution.rays += report.rays;
-            solution.links = report.links;
+            solution.report.links = report.links;
             const double before = solution.link_error;
             solution.link_error = std::sqrt(links_.squared_error(light_) / reflected);
             const bool stuck =

@@ -9,7 +9,12 @@
 
 namespace patchlight {
 
-enum class Solver { progressive, jacobi, gauss_seidel, hierarchical };
+enum class Solver {
+    progressive,
+    jacobi,
+    gauss_seidel,
+    hierarchical  ///< links between groups of patches, see solve_hierarchical()
+};
 
 /// What is shot first.
 enum class ShootingOrder {
@@ -33,6 +38,7 @@ struct SolveReport {
     double unshot = 0;           ///< share of the emitted power not yet shot; gathering: 0
     bool converged = false;
     std::size_t rays = 0;         ///< traced on demand
+    std::size_t links = 0;        ///< hierarchical: that carry light, each both ways
     std::vector<double> history;  ///< residual after each sweep; shooting: after 1, 2, 4, 8 … shots
 };
 

@@ -17,6 +17,8 @@ namespace {
 constexpr double area_per_squared_edge = 0.25;
 // Beside the rows: mesh, fields and their copies.
 constexpr double bytes_per_element = 1500;
+// Of an element, with its share of the tree; about 60 links.
+constexpr double bytes_of_links = 3000;
 
 double physical_memory()
 {
@@ -51,8 +53,10 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     // edges for two of them.
     const double middles = options.elements == Elements::quadratic ? 1.5 * elements : 0;
     cost.rays = 3 * elements * (options.form_factors.rays + 0.5 * options.gather.rays) + middles * options.gather.rays;
-    cost.bytes =
-        matrix_bytes(options.form_factors.method, cost.elements, options.form_factors) + elements * bytes_per_element;
+    const bool links = options.final.solver == Solver::hierarchical && options.refine == Refine::none;
+    const double factors = links ? elements * bytes_of_links
+                                 : matrix_bytes(options.form_factors.method, cost.elements, options.form_factors);
+    cost.bytes = factors + elements * bytes_per_element;
     return cost;
 }
 

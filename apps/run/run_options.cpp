@@ -25,8 +25,10 @@ const ModeNames<Elements>& element_names()
 
 const ModeNames<Solver>& solver_names()
 {
-    static const ModeNames<Solver> names{
-        {"progressive", Solver::progressive}, {"jacobi", Solver::jacobi}, {"gauss-seidel", Solver::gauss_seidel}};
+    static const ModeNames<Solver> names{{"progressive", Solver::progressive},
+                                         {"jacobi", Solver::jacobi},
+                                         {"gauss-seidel", Solver::gauss_seidel},
+                                         {"hierarchical", Solver::hierarchical}};
     return names;
 }
 

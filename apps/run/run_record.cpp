@@ -75,6 +75,7 @@ CycleRecord cycle_in(const Json& json)
     r.solver_iterations = solve.at("iterations").get<std::size_t>();
     r.solver_residual = solve.at("residual").get<double>();
     r.solver_converged = solve.at("converged").get<bool>();
+    r.links = solve.value("links", std::size_t{0});
     r.splits = json.at("splits").get<std::size_t>();
     r.lines = line_counts_in(json.at("lines"));
     r.energy = energy_in(json.at("energy"));
@@ -128,6 +129,7 @@ CycleRecord record_of(const AdaptiveStep& step)
     r.solver_iterations = step.solved.iterations;
     r.solver_residual = step.solved.residual;
     r.solver_converged = step.solved.converged;
+    r.links = step.solved.links;
     r.splits = step.splits;
     r.lines = step.lines;
     r.energy = step.energy;
@@ -148,7 +150,8 @@ Json json_of(const CycleRecord& r)
              {{"solver", name_of(solver_names(), r.solver)},
               {"iterations", r.solver_iterations},
               {"residual", r.solver_residual},
-              {"converged", r.solver_converged}}},
+              {"converged", r.solver_converged},
+              {"links", r.links}}},
             {"splits", r.splits},
             {"lines", json_of(r.lines)},
             {"energy", json_of(r.energy)},

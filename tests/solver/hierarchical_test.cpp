@@ -107,7 +107,7 @@ void expect_convergence(const char* name, const Room& room)
         }
         std::printf("bias %+.5f", bias / whole);
         std::printf("  %.4f %.4f %.5f %zu %.4f %zu sweeps %zu E %.4f\n", tolerance, found.solution.link_error, last,
-                    found.solution.links, static_cast<double>(found.solution.links) / n / n, found.solution.rays,
+                    found.solution.report.links, static_cast<double>(found.solution.report.links) / n / n, found.solution.rays,
                     found.solution.report.iterations, found.solution.energy.relative_residual);
         std::fflush(stdout);
     }
@@ -126,7 +126,7 @@ TEST(Explore, Small)
     const Radiosity reference = dense(room);
     for (const double tolerance : {1e-3, 3e-4, 1e-4, 1e-5}) {
         const Linked found = linked(room, tolerance);
-        std::printf("%g %zu links %zu rays error %.5f\n", tolerance, found.solution.links, found.solution.rays,
+        std::printf("%g %zu links %zu rays error %.5f\n", tolerance, found.solution.report.links, found.solution.rays,
                     error(room, found.B, reference));
     }
 }
@@ -167,6 +167,30 @@ TEST(Explore, Pairs)
         std::printf("%g found %g exact %g rays %u, %zu (%g %g %g) %zu (%g %g %g)\n", o.d, o.found, o.exact, o.rays,
                     std::size_t{room.mesh.surface(PatchId(o.i)).value}, x.x, x.y, x.z,
                     std::size_t{room.mesh.surface(PatchId(o.j)).value}, y.x, y.y, y.z);
+    }
+}
+
+TEST(Explore, Energy)
+{
+    for (const bool direct : {true, false}) {
+    const Room room(read("furniture-room.obj"), 2500, direct);
+    RadiositySystem system = assemble(room.exchange(), {});
+    Radiosity B = emittance(room.scene, room.mesh);
+    const Radiosity E = system.E;
+    if (room.direct)
+        for (const PatchId p : room.mesh.patches()) {
+            system.E[p] = system.rho[p] * system.direct[p];
+            B[p] -= E[p];
+        }
+    solve_gathering(system, B, {.tolerance = 1e-9});
+    if (room.direct)
+        for (const PatchId p : room.mesh.patches()) B[p] += E[p];
+    system.E = E;
+    const EnergyBalance e = energy_balance(system, B);
+    std::printf("dense: %g %g %g %g\n", e.emitted, e.absorbed, e.escaped, e.relative_residual);
+    const Linked l = linked(room, 0.02);
+    const EnergyBalance f = l.solution.energy;
+    std::printf("linked: %g %g %g %g\n", f.emitted, f.absorbed, f.escaped, f.relative_residual);
     }
 }
 
