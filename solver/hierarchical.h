@@ -7,7 +7,7 @@
 namespace patchlight {
 
 struct HierarchicalOptions {
-    double tolerance = 0.02;  ///< on the estimated relative L2 error that links add to the reflected light, > 0
+    double tolerance = 0.05;  ///< on the estimated relative L2 error that links add to the reflected light, > 0
     int max_sweeps = 1000;    ///< of the linear solve on the finest links, ≥ 1
     std::size_t max_links = 400'000'000;  ///< 32 bytes each while solving; over it refinement ends, unconverged
     std::uint64_t seed = 1;
