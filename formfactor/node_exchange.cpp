@@ -32,6 +32,11 @@ double kernel_between(const Vec3& x, const Vec3& n, const Vec3& y, const Vec3& m
     return cosines > 0 ? cosines / (std::numbers::pi * r2 * r2) : 0;
 }
 
+double square(double x)
+{
+    return x * x;
+}
+
 double mean_of(std::span<const double> values)
 {
     double sum = 0;
@@ -97,77 +102,83 @@ NodeExchange::Point NodeExchange::point_on(std::uint32_t node, double along, dou
             scene_.surface(mesh_.surface(patch)).frame.n};
 }
 
-/// Nothing where a shaft isn't tried.
-std::optional<Visibility> NodeExchange::seen_through(std::uint32_t p, std::uint32_t q, std::size_t most,
-                                                     Scratch& scratch) const
+/// `partial` too where a shaft isn't tried.
+Visibility NodeExchange::seen_through(std::uint32_t p, std::uint32_t q, std::size_t most, Scratch& scratch) const
 {
     const PatchHierarchy::Node &a = tree_.nodes[p], &b = tree_.nodes[q];
-    if (!a.surface.valid() || !b.surface.valid()) return {};
+    if (!a.surface.valid() || !b.surface.valid()) return Visibility::partial;
     node_hull(scene_, mesh_, tree_, p, scratch.hull_p);
     node_hull(scene_, mesh_, tree_, q, scratch.hull_q);
     return blockers_.among_few(scratch.hull_p, a.axis, scratch.hull_q, b.axis, most, scratch.between);
+}
+
+/// m points on each of both, and the kernel between every two of them with nothing in between.
+void NodeExchange::set_points(std::uint32_t p, std::uint32_t q, std::uint32_t m, std::uint32_t draw,
+                              Scratch& scratch) const
+{
+    const std::uint64_t key = RandomNumbers(key_of(p, q), draw).bits();
+    const ScrambledPoints points_p(seed_, key), points_q(seed_, key + 1);
+    scratch.on_p.resize(m);
+    scratch.on_q.resize(m);
+    for (std::uint32_t k = 0; k < m; ++k) {
+        const auto [u, v] = points_p(k);
+        const auto [s, t] = points_q(k);
+        scratch.on_p[k] = point_on(p, u, v);
+        scratch.on_q[k] = point_on(q, s, t);
+    }
+    scratch.kernel.clear();
+    for (const Point& x : scratch.on_p)
+        for (const Point& y : scratch.on_q)
+            scratch.kernel.push_back(kernel_between(x.place, x.normal, y.place, y.normal));
+}
+
+/// Strikes out what is hidden.
+void NodeExchange::trace_points(Scratch& scratch) const
+{
+    scratch.rays.resize(scratch.kernel.size());
+    std::size_t k = 0;
+    for (const Point& x : scratch.on_p)
+        for (const Point& y : scratch.on_q) {
+            const Vec3 start = caster_.leave(x.place, x.normal);
+            scratch.rays.set(k++, start, caster_.leave(y.place, y.normal) - start, 1.0F);
+        }
+    caster_.occluded(scratch.rays, scratch.blocked);
+    for (std::size_t i = 0; i < scratch.kernel.size(); ++i)
+        if (scratch.blocked[i] != 0) scratch.kernel[i] = 0;
+    scratch.traced += scratch.kernel.size();
 }
 
 MeanKernel NodeExchange::between_points(std::uint32_t p, std::uint32_t q, std::uint32_t m, std::uint32_t draw,
                                         Scratch& scratch) const
 {
     // For two rays each way a shaft costs more than it saves.
-    const std::optional<Visibility> seen = m > 2 ? seen_through(p, q, few_blockers, scratch) : std::nullopt;
+    const Visibility seen = m > 2 ? seen_through(p, q, few_blockers, scratch) : Visibility::partial;
     if (seen == Visibility::hidden) return {};
-    std::array<Point, 8> on_p, on_q;
-    const std::uint64_t key = RandomNumbers(key_of(p, q), draw).bits();
-    const ScrambledPoints points_p(seed_, key), points_q(seed_, key + 1);
-    for (std::uint32_t k = 0; k < m; ++k) {
-        const auto [u, v] = points_p(k);
-        const auto [s, t] = points_q(k);
-        on_p[k] = point_on(p, u, v);
-        on_q[k] = point_on(q, s, t);
-    }
-    const std::size_t n = std::size_t{m} * m;
-    scratch.kernel.assign(n, 0.0);
-    double open = 0;
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j < m; ++j)
-            open += scratch.kernel[i * m + j] =
-                kernel_between(on_p[i].place, on_p[i].normal, on_q[j].place, on_q[j].normal);
-    open /= static_cast<double>(n);
+    set_points(p, q, m, draw, scratch);
+    const auto n = static_cast<double>(scratch.kernel.size());
+    const auto open = static_cast<double>(std::ranges::count_if(scratch.kernel, [](double k) { return k > 0; }));
+    // The kernel where there is one: what a place has that no pair of points chanced to see.
+    const double typical =
+        open > 0 ? mean_of(scratch.kernel) * n / open : greatest_kernel(tree_.nodes[p], tree_.nodes[q]);
     MeanKernel result;
-    double unsure = 0;  // variance of what the points may have missed
-    if (!(open > 0)) {
-        const double greatest = greatest_kernel(tree_.nodes[p], tree_.nodes[q]);
-        unsure = greatest * greatest * variance_of_share(0, static_cast<double>(n));
-    }
     if (seen != Visibility::visible && open > 0) {
-        scratch.rays.resize(n);
-        for (std::size_t i = 0; i < m; ++i)
-            for (std::size_t j = 0; j < m; ++j) {
-                const Vec3 start = caster_.leave(on_p[i].place, on_p[i].normal);
-                scratch.rays.set(i * m + j, start, caster_.leave(on_q[j].place, on_q[j].normal) - start, 1.0F);
-            }
-        caster_.occluded(scratch.rays, scratch.blocked);
-        double free = 0;
-        for (std::size_t k = 0; k < n; ++k) {
-            free += scratch.blocked[k] == 0 ? 1 : 0;
-            if (scratch.blocked[k] != 0) scratch.kernel[k] = 0;
-        }
-        const auto count = static_cast<double>(n);
-        unsure = open * open * variance_of_share(free / count, count);
-        result.rays = static_cast<std::uint32_t>(n);
-        scratch.traced += n;
+        trace_points(scratch);
+        result.rays = static_cast<std::uint32_t>(scratch.kernel.size());
     }
+    const auto free = static_cast<double>(std::ranges::count_if(scratch.kernel, [](double k) { return k > 0; }));
+    const bool sure = seen == Visibility::visible && free == n;
+    const double unsure = sure ? 0 : square(typical) * variance_of_share(free / n, n);
     result.mean = mean_of(scratch.kernel);
     scratch.row.assign(m, 0.0);
     scratch.column.assign(m, 0.0);
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j < m; ++j) {
-            scratch.row[i] += scratch.kernel[i * m + j] / m;
-            scratch.column[j] += scratch.kernel[i * m + j] / m;
-        }
+    for (std::size_t k = 0; k < scratch.kernel.size(); ++k) {
+        scratch.row[k / m] += scratch.kernel[k] / m;
+        scratch.column[k % m] += scratch.kernel[k] / m;
+    }
     const double over_p = variance_of(scratch.row), over_q = variance_of(scratch.column);
     const double chance = (over_p + over_q) / m;
     const auto spread = [&](std::uint32_t node, double variance) {
-        return std::sqrt(tree_.nodes[node].is_leaf() ? std::max(chance, unsure / static_cast<double>(n))
-                                                     : std::max(variance, unsure));
+        return std::sqrt(tree_.nodes[node].is_leaf() ? std::max(chance, unsure / n) : std::max(variance, unsure));
     };
     result.spread_p = spread(p, over_p);
     result.spread_q = spread(q, over_q);
@@ -214,7 +225,7 @@ void NodeExchange::add_rays(std::uint32_t p, std::uint32_t q, std::uint32_t want
 
 MeanKernel NodeExchange::between_patches(std::uint32_t p, std::uint32_t q, double spread, Scratch& scratch) const
 {
-    std::optional<Visibility> seen = seen_through(p, q, few_blockers, scratch);
+    Visibility seen = seen_through(p, q, few_blockers, scratch);
     if (seen == Visibility::hidden) return {};
     const PatchHierarchy::Node &a = tree_.nodes[p], &b = tree_.nodes[q];
     const double areas = a.area * b.area;

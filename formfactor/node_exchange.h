@@ -5,9 +5,7 @@
 #include "formfactor/patch_hierarchy.h"
 #include "formfactor/ray_caster.h"
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -27,8 +25,13 @@ struct MeanKernel {
 /// Rays that all agree aren't trusted more than their number allows, so that slits aren't lost. Deterministic: keyed by
 /// the seed and the nodes. Keeps references. All queries may be made from many threads at once.
 class NodeExchange {
+    struct Point {
+        Vec3 place{0.0}, normal{0.0};
+    };
+
 public:
     struct Scratch {
+        std::vector<Point> on_p, on_q;
         RayBatch rays;
         std::vector<std::uint8_t> blocked;
         std::vector<double> kernel, row, column;
@@ -45,7 +48,7 @@ public:
 
     /// See may_face().
     bool may_face(std::uint32_t p, std::uint32_t q) const;
-    /// By m² rays from m points to m, 2 ≤ m ≤ 8: what mean and spreads are worth grows with m.
+    /// By m² rays from m points to m, m ≥ 2: what mean and spreads are worth grows with m.
     /// Each `draw` has other points.
     MeanKernel between_points(std::uint32_t p, std::uint32_t q, std::uint32_t m, std::uint32_t draw,
                               Scratch& scratch) const;
@@ -55,15 +58,13 @@ public:
     MeanKernel between_patches(std::uint32_t p, std::uint32_t q, double spread, Scratch& scratch) const;
 
 private:
-    struct Point {
-        Vec3 place{0.0}, normal{0.0};
-    };
-
     struct Share;
 
     void add_rays(std::uint32_t p, std::uint32_t q, std::uint32_t wanted, Share& share, Scratch& scratch) const;
+    void set_points(std::uint32_t p, std::uint32_t q, std::uint32_t m, std::uint32_t draw, Scratch& scratch) const;
+    void trace_points(Scratch& scratch) const;
     Point point_on(std::uint32_t node, double along, double across) const;
-    std::optional<Visibility> seen_through(std::uint32_t p, std::uint32_t q, std::size_t most, Scratch& scratch) const;
+    Visibility seen_through(std::uint32_t p, std::uint32_t q, std::size_t most, Scratch& scratch) const;
 
     const Scene& scene_;
     const RayCaster& caster_;

@@ -42,7 +42,7 @@ class Builder {
 public:
     Builder(const Scene& scene, const PatchMesh& mesh) : scene_(scene), mesh_(mesh) {}
 
-    PatchHierarchy build()
+    PatchHierarchy build(std::span<const std::uint8_t> lit)
     {
         std::vector<Item> items;
         for (std::size_t s = 0; s < scene_.surfaces.size(); ++s)
@@ -51,7 +51,13 @@ public:
         tree_.order.reserve(mesh_.patch_count());
         tree_.area_upto.reserve(mesh_.patch_count() + 1);
         tree_.area_upto.push_back(0);
-        if (!items.empty()) add_surfaces(items);
+        const auto dark = std::ranges::stable_partition(
+            items, [&](const Item& i) { return lit.empty() || lit[i.surface.value] != 0; });
+        const std::size_t first = items.size() - dark.size();
+        if (first > 0 && first < items.size())
+            add_parent(items, first);
+        else if (!items.empty())
+            add_surfaces(items);
         return std::move(tree_);
     }
 
@@ -90,7 +96,11 @@ private:
             }
             return add_patches(places);
         }
-        const std::size_t cut = split(items);
+        return add_parent(items, split(items));
+    }
+
+    std::int32_t add_parent(std::span<Item> items, std::size_t cut)
+    {
         Node node;
         node.left = add_surfaces(items.first(cut));
         node.right = add_surfaces(items.subspan(cut));
@@ -249,9 +259,9 @@ double greatest_height(const Node& p, const Node& q, double farthest)
 
 }  // namespace
 
-PatchHierarchy patch_hierarchy(const Scene& scene, const PatchMesh& mesh)
+PatchHierarchy patch_hierarchy(const Scene& scene, const PatchMesh& mesh, std::span<const std::uint8_t> lit)
 {
-    return Builder(scene, mesh).build();
+    return Builder(scene, mesh).build(lit);
 }
 
 void node_hull(const Scene& scene, const PatchMesh& mesh, const PatchHierarchy& tree, std::uint32_t node,

@@ -37,8 +37,9 @@ struct PatchHierarchy {
     std::uint32_t root() const { return static_cast<std::uint32_t>(nodes.size()) - 1; }
 };
 
-/// O(n log n); depends on the mesh alone.
-PatchHierarchy patch_hierarchy(const Scene& scene, const PatchMesh& mesh);
+/// O(n log n). `lit`, if given, by surface: the others share no node with them but the root, so that what is lit lends
+/// them no light of its own.
+PatchHierarchy patch_hierarchy(const Scene& scene, const PatchMesh& mesh, std::span<const std::uint8_t> lit = {});
 
 /// The rectangle of a node of one surface; for a leaf its patch.
 void node_hull(const Scene& scene, const PatchMesh& mesh, const PatchHierarchy& tree, std::uint32_t node,

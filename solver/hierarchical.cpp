@@ -12,7 +12,8 @@ namespace {
 constexpr double coarsest = 16;       // times the tolerance: of the first links
 constexpr double linear_share = 0.1;  // of the tolerance: for the linear solve
 constexpr int few_sweeps = 8;         // before the last links: coarse ones may even amplify
-constexpr int passes = 12;            // of sharing out one tolerance anew over the links that it led to
+constexpr int idle_passes = 3;
+constexpr int passes = 12;  // of sharing out one tolerance anew over the links that it led to
 
 double square(double x)
 {
@@ -51,7 +52,8 @@ class LinkedLight {
 public:
     LinkedLight(const Exchange& exchange, const RadiositySystem& system, const Radiosity& start,
                 const HierarchicalOptions& options, const WorkMonitor& monitor)
-        : system_(system), options_(options), monitor_(monitor), tree_(patch_hierarchy(exchange.scene, exchange.mesh)),
+        : system_(system), options_(options), monitor_(monitor),
+          tree_(patch_hierarchy(exchange.scene, exchange.mesh, lit_surfaces(exchange, options.seed))),
           nodes_(exchange.scene, exchange.caster, exchange.mesh, tree_, options.seed), links_(tree_, nodes_),
           direct_(!system.direct.empty()), S_(start.size()), X_(start), H_(start.size(), Rgb(0.0))
     {
@@ -120,16 +122,18 @@ private:
         links_.pull(X_, light_);
         double reflected = norm(false);
         if (!(reflected > 0)) reflected = guessed_norm();
-        if (most_ == 0) most_ = square(tolerance) * reflected / static_cast<double>(4 * X_.size());
+        const double first = square(tolerance) * reflected / static_cast<double>(4 * X_.size());
+        if (most_ == 0 || first < most_) most_ = first;
+        int idle = 0;
         for (int pass = 0; pass < passes; ++pass) {
             const LinkingReport report = links_.refine(light_, most_, monitor_);
             solution.rays += report.rays;
             solution.report.links = report.links;
             const double before = solution.link_error;
             solution.link_error = std::sqrt(links_.squared_error(light_) / reflected);
-            const bool stuck =
-                pass > 0 && solution.link_error > 0.99 * before;  // between patches nothing is left to do
-            if (solution.link_error <= tolerance || stuck) break;
+            idle = pass > 0 && solution.link_error > 0.99 * before ? idle + 1 : 0;
+            // Between patches nothing may be left to do.
+            if (solution.link_error <= tolerance || idle == idle_passes) break;
             if (links_.links().size() > options_.max_links) break;
             // The error falls about with the cube root.
             most_ *= std::clamp(std::pow(tolerance / solution.link_error, 3), 0.02, 0.7);
