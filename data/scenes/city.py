@@ -3,7 +3,7 @@
     python3 city.py --polygons N --stem PATH      about N polygons, PATH.obj and PATH.mtl; without: checks itself only
 
 Facades have windows flush with the wall; one in five is lit and emits, so that large cities have thousands of emitters,
-and over the city hangs a panel of sky, one emitter as large as it. 10^6 polygons are 420,000 surfaces of a file of 80 MB.
+and over the city hangs a panel of sky, one emitter as large as it. 10^6 polygons are 420,000 surfaces in a file of 75 MB.
 """
 
 import argparse
