@@ -73,7 +73,7 @@ public:
         solution.nodes = tree_.nodes.size();
         solution.report.solver = Solver::hierarchical;
         solution.report.converged = true;
-        if (norm(false) > 0 || guessed_norm() > 0)
+        if (norm() > 0 || guessed_norm() > 0)
             for (double times = coarsest; times >= 1; times /= 2) link_and_sweep(times, solution);
         solution.report.rays = solution.rays;
         solution.bytes = links_.bytes() + tree_.nodes.size() * sizeof(PatchHierarchy::Node);
@@ -90,13 +90,13 @@ public:
     }
 
 private:
-    /// Σ A |reflected light|², or of all that is carried.
-    double norm(bool carried) const
+    /// Σ A |reflected light|².
+    double norm() const
     {
         double total = 0;
         for (std::size_t i = 0; i < X_.size(); ++i) {
             const PatchId p(i);
-            total += system_.area[p] * squared(direct_ || carried ? X_[p] : X_[p] - S_[p]);
+            total += system_.area[p] * squared(direct_ ? X_[p] : X_[p] - S_[p]);
         }
         return total;
     }
@@ -115,18 +115,34 @@ private:
         return area > 0 ? reflecting * squared(power / area) : 0;
     }
 
+    /// One round of multigridding, for so many times the tolerance.
     void link_and_sweep(double times, HierarchicalSolution& solution)
     {
-        const double tolerance = times * options_.tolerance;
+        link(times, solution);
+        links_.sort_links();
         const bool last = times == 1;
+        sweep(linear_share * times * options_.tolerance, last ? options_.max_sweeps : few_sweeps, solution.report);
+        if (!last) return;
+        solution.report.converged = solution.report.converged && solution.link_error <= options_.tolerance;
+        solution.report.residual = std::max(solution.report.residual, solution.link_error);
+    }
+
+    /// Refines until the links' estimated error is below the tolerance for the light that there is now.
+    void link(double times, HierarchicalSolution& solution)
+    {
+        const double tolerance = times * options_.tolerance;
         links_.pull(X_, light_);
-        double reflected = norm(false);
+        double reflected = norm();
         if (!(reflected > 0)) reflected = guessed_norm();
         const double first = square(tolerance) * reflected / static_cast<double>(4 * X_.size());
         if (most_ == 0 || first < most_) most_ = first;
-        int idle = 0;
-        for (int pass = 0; pass < passes; ++pass) {
-            const LinkingReport report = links_.refine(light_, most_, monitor_);
+        WorkMonitor linking{monitor_.stop, {}};
+        if (monitor_.tell)
+            linking.tell = [&](const WorkState& state) {
+                monitor_.tell({.fraction = 0.5 / times, .rays = solution.rays + state.rays});
+            };
+        for (int pass = 0, idle = 0; pass < passes; ++pass) {
+            const LinkingReport report = links_.refine(light_, most_, linking);
             solution.rays += report.rays;
             solution.report.links = report.links;
             const double before = solution.link_error;
@@ -138,11 +154,6 @@ private:
             // The error falls about with the cube root.
             most_ *= std::clamp(std::pow(tolerance / solution.link_error, 3), 0.02, 0.7);
         }
-        links_.sort_links();
-        sweep(linear_share * tolerance, last ? options_.max_sweeps : few_sweeps, solution.report);
-        if (!last) return;
-        solution.report.converged = solution.report.converged && solution.link_error <= options_.tolerance;
-        solution.report.residual = std::max(solution.report.residual, solution.link_error);
     }
 
     /// Jacobi on the links, to the bound that solve_gathering has, in L1.
