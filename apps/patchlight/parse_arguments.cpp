@@ -82,11 +82,11 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
     app.add_option("--solver", t.solver, "of the final solve")
         ->check(CLI::IsMember(words(solver_names())))
         ->capture_default_str();
-    t.tolerance_option =
-        app.add_option("--tolerance", o.final.tolerance, "of the final solve; progressive: 0.01, hierarchical: 0.05 unless given")
-            ->check(number_between(1e-12, 0.5))
-            ->type_name("T")
-            ->capture_default_str();
+    t.tolerance_option = app.add_option("--tolerance", o.final.tolerance,
+                                        "of the final solve; progressive: 0.01, hierarchical: 0.05 unless given")
+                             ->check(number_between(1e-12, 0.5))
+                             ->type_name("T")
+                             ->capture_default_str();
     app.add_option("--order", t.order, "what progressive shoots first")
         ->check(CLI::IsMember(words(order_names())))
         ->capture_default_str();

@@ -46,8 +46,8 @@ INSTANTIATE_TEST_SUITE_P(
     NotBuiltYet, RefusedArguments,
     ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"}, std::vector<std::string>{"verify", "a"},
                       std::vector<std::string>{"report", "a", "-o", "b"}, std::vector<std::string>{"study", "run", "a"},
-                      solving({"--refine", "quadratic"}), solving({"--solver", "hierarchical"}),
-                      solving({"--form-factors", "monte-carlo"}), solving({"--form-factors", "closed-form"}),
+                      solving({"--refine", "quadratic"}), solving({"--form-factors", "monte-carlo"}),
+                      solving({"--form-factors", "closed-form"}),
                       solving({"--form-factors", "exact", "--solver", "progressive"}), solving({"--resolution", "127"}),
                       solving({"--mesh", "a"}), std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
 
