@@ -106,6 +106,12 @@ Blockers::~Blockers() = default;
 Visibility Blockers::between(std::span<const Vec3> a, const Vec3& normal_a, std::span<const Vec3> b,
                              const Vec3& normal_b, std::vector<Blocker>& found) const
 {
+    return among_few(a, normal_a, b, normal_b, blockers_.size(), found);
+}
+
+Visibility Blockers::among_few(std::span<const Vec3> a, const Vec3& normal_a, std::span<const Vec3> b,
+                               const Vec3& normal_b, std::size_t most, std::vector<Blocker>& found) const
+{
     found.clear();
     const double offset_a = glm::dot(normal_a, a[0]), offset_b = glm::dot(normal_b, b[0]);
     if (!any_in_front(a, normal_b, offset_b, snap_) || !any_in_front(b, normal_a, offset_a, snap_))
@@ -118,7 +124,11 @@ Visibility Blockers::between(std::span<const Vec3> a, const Vec3& normal_a, std:
     bounds.add(shaft.a);
     bounds.add(shaft.b);
     std::vector<Entry> near;
-    tree_->boxes.query(geometry::index::intersects(bounds.box(snap_)), std::back_inserter(near));
+    const auto meets = geometry::index::intersects(bounds.box(snap_));
+    for (auto it = tree_->boxes.qbegin(meets); it != tree_->boxes.qend(); ++it) {
+        if (near.size() == most) return Visibility::partial;
+        near.push_back(*it);
+    }
     std::ranges::sort(near, {}, &Entry::second);
     Blocker rest;
     for (const Entry& entry : near) {

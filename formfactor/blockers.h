@@ -39,6 +39,9 @@ public:
     /// `found`), or when a polygon is behind the other's plane or in it.
     Visibility between(std::span<const Vec3> a, const Vec3& normal_a, std::span<const Vec3> b, const Vec3& normal_b,
                        std::vector<Blocker>& found) const;
+    /// The same, but not tried when the boxes of more than `most` blockers meet the shaft's: `partial` then.
+    Visibility among_few(std::span<const Vec3> a, const Vec3& normal_a, std::span<const Vec3> b, const Vec3& normal_b,
+                         std::size_t most, std::vector<Blocker>& found) const;
 
     std::span<const Blocker> all() const { return blockers_; }
     /// Heights below are nothing, m.

@@ -20,11 +20,11 @@ struct Shares {
     double backs = 0, escaped = 0;
 };
 
-Shares from_surface(const Scene& scene, const RayCaster& caster, SurfaceId surface, std::size_t points,
-                    std::uint64_t seed)
+Shares from_surface(const Scene& scene, const RayCaster& caster, SurfaceId surface, std::span<const Facet> facets,
+                    std::size_t points, std::uint64_t seed)
 {
     const auto sets = hemisphere_sets({.rays = rays_of_a_point, .seed = seed + surface.value}, 8);
-    const Source area(scene, surface);
+    const Source area(scene, surface, facets);
     const PlaneFrame& frame = scene.surface(surface).frame;
     RandomNumbers random(seed, surface.value);
     RayBatch batch;
@@ -66,12 +66,15 @@ FirstHits sample_first_hits(const Scene& scene, const RayCaster& caster, int ray
         area += scene.surfaces[s].area;
         power += power_of(s);
     }
+    const std::vector<Facet> facets = facets_of(scene);
     FirstHits result;
-    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    for (std::size_t s = 0, first = 0, last = 0; s < scene.surfaces.size(); ++s, first = last) {
+        while (last < facets.size() && facets[last].surface == SurfaceId(s)) ++last;
         const double area_share = scene.surfaces[s].area / area, power_share = power > 0 ? power_of(s) / power : 0;
         const double share = std::max(area_share, power_share);
         const auto points = static_cast<std::size_t>(std::ceil(rays * share / static_cast<double>(rays_of_a_point)));
-        const auto [backs, escaped] = from_surface(scene, caster, SurfaceId(s), points, seed);
+        const auto [backs, escaped] =
+            from_surface(scene, caster, SurfaceId(s), std::span(facets).subspan(first, last - first), points, seed);
         result.backs += area_share * backs;
         result.escaped += area_share * escaped;
         result.emitted_backs += power_share * backs;

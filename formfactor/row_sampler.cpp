@@ -11,6 +11,8 @@ namespace {
 
 constexpr int set_count = 32;
 constexpr int least_shadow_rays = 16;
+/// Every row asks each of them: with more it would be the sources that take the time, and each matters little.
+constexpr std::size_t most_sources = 500;
 constexpr std::uint64_t shadow_stream = 0x5ad0ULL << 48;  // other random numbers than the directions'
 
 }  // namespace
@@ -20,6 +22,7 @@ RowSampler::RowSampler(const Scene& scene, const RayCaster& caster, const PatchM
     : scene_(scene), caster_(caster), mesh_(mesh), locator_(locator), options_(options),
       sets_(hemisphere_sets(options, set_count))
 {
+    if (sources.size() > most_sources) return;
     for (const SurfaceId s : sources) sources_.emplace_back(scene, s);
 }
 

@@ -29,7 +29,7 @@ struct RowScratch {
 /// included, so that the sum over everything stays. Keeps references to all it is made of.
 class RowSampler {
 public:
-    /// `sources`: the surfaces that may be seen by Lambert's formula (emitters).
+    /// `sources`: the surfaces that may be seen by Lambert's formula (emitters). Of more than 500 none is: rays alone.
     RowSampler(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const PatchLocator& locator,
                std::span<const SurfaceId> sources, const FormFactorOptions& options);
 

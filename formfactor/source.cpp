@@ -1,6 +1,5 @@
 #include "formfactor/source.h"
 
-#include "formfactor/facets.h"
 #include "formfactor/lambert.h"
 
 #include <algorithm>
@@ -15,9 +14,12 @@ constexpr float nearly_there = 1 - 1e-5F;
 
 }  // namespace
 
-Source::Source(const Scene& scene, SurfaceId surface) : surface_(surface), normal_(scene.surface(surface).frame.n)
+Source::Source(const Scene& scene, SurfaceId surface) : Source(scene, surface, facets_of(scene, surface)) {}
+
+Source::Source(const Scene& scene, SurfaceId surface, std::span<const Facet> facets)
+    : surface_(surface), normal_(scene.surface(surface).frame.n)
 {
-    for (Facet& facet : facets_of(scene, surface)) pieces_.push_back(std::move(facet.corners));
+    for (const Facet& facet : facets) pieces_.push_back(facet.corners);
     if (pieces_.size() == 1 && pieces_[0].size() == 4) {
         const std::vector<Vec3>& outer = pieces_[0];
         const Vec3 gap = outer[0] + outer[2] - outer[1] - outer[3];

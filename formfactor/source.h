@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactor/facets.h"
 #include "formfactor/random_numbers.h"
 #include "formfactor/ray_caster.h"
 
@@ -15,6 +16,8 @@ namespace patchlight {
 class Source {
 public:
     Source(const Scene& scene, SurfaceId surface);
+    /// Of many surfaces one after the other: `facets` are the surface's.
+    Source(const Scene& scene, SurfaceId surface, std::span<const Facet> facets);
     /// Part of a surface: triangles (patches), counter-clockwise seen from its front.
     Source(SurfaceId surface, const Vec3& normal, std::span<const std::array<Vec3, 3>> triangles);
 

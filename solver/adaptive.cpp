@@ -1,5 +1,6 @@
 #include "solver/adaptive.h"
 
+#include "solver/hierarchical.h"
 #include "solver/importance.h"
 
 #include <algorithm>
@@ -94,16 +95,35 @@ struct Emitted {
 
 /// The patches of one mesh, solved.
 struct PatchSolution {
-    RadiositySystem system;
+    RadiositySystem system;  ///< without rows where links stood for them
     Radiosity B;
     SolveReport report;
+    EnergyBalance energy;
     std::size_t rays = 0;
 };
+
+PatchSolution solve_on_links(const Exchange& exchange, const AdaptiveOptions& options, Stages& stages)
+{
+    PatchSolution solution;
+    const std::size_t n = exchange.mesh.patch_count();
+    solution.system =
+        stages.run("assemble", &StageSeconds::assemble, n, [&](const WorkMonitor&) { return unassembled(exchange); });
+    solution.B = solution.system.E;
+    const HierarchicalSolution found = stages.run("solve", &StageSeconds::solve, n, [&](const WorkMonitor& monitor) {
+        const HierarchicalOptions links{.tolerance = options.final.tolerance, .seed = options.form_factors.seed};
+        return solve_hierarchical(exchange, solution.system, solution.B, links, monitor);
+    });
+    solution.report = found.report;
+    solution.energy = found.energy;
+    solution.rays = found.rays;
+    return solution;
+}
 
 /// Solves (I − diag(ρ)F)B = E with all bounces. Where the emitters' light is known exactly, for the reflected part:
 /// R = ρ H_direct + ρ F R.
 PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& options, Stages& stages)
 {
+    if (options.final.solver == Solver::hierarchical) return solve_on_links(exchange, options, stages);
     PatchSolution solution;
     const std::size_t n = exchange.mesh.patch_count();
     solution.system = stages.run("assemble", &StageSeconds::assemble, n, [&](const WorkMonitor& monitor) {
@@ -127,6 +147,7 @@ PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& opt
         system.E = emission;
         for (std::size_t i = 0; i < n; ++i) solution.B[PatchId(i)] += emission[PatchId(i)];
     }
+    solution.energy = energy_balance(system, solution.B);
     solution.rays = system.F.rays + solution.report.rays;
     return solution;
 }
@@ -186,7 +207,9 @@ PatchField<double> weights_of(const Exchange& coarse, const RadiositySystem& sys
         seen.push_back(coarse.locator.locate(point.surface, static_cast<float>(q.x), static_cast<float>(q.y)));
     }
     const PatchField<double> shares = seen_shares(coarse.mesh.patch_count(), seen);
-    return importance_weights(system, importance(system, rows_of(system.F), shares));
+    const RadiositySystem assembled = system.F.size() > 0 ? RadiositySystem{} : assemble(coarse, options.form_factors);
+    const RadiositySystem& rows = system.F.size() > 0 ? system : assembled;
+    return importance_weights(rows, importance(rows, rows_of(rows.F), shares));
 }
 
 /// What to change; `counted` is the error as far as it counts for what is looked at.
@@ -250,12 +273,13 @@ public:
         return weights_.empty() ? error : weighted(error, weights_on(coarse_.scene, mesh, locator_, weights_));
     }
 
-    /// Where the light of a solution goes, by the rows of the uniform mesh.
+    /// Where the light of a solution goes, by the rows of the uniform mesh; by links, where that of its patches does.
     EnergyBalance energy(const PatchMesh& mesh, const PatchLocator& locator, const Radiosity& B) const
     {
+        if (patches_.system.F.size() == 0) return patches_.energy;
         return energy_balance(patches_.system, prolong(mesh_, B, overlap(mesh, locator, mesh_)));
     }
-    EnergyBalance energy() const { return energy_balance(patches_.system, patches_.B); }
+    EnergyBalance energy() const { return patches_.energy; }
 
 private:
     const Emitted& emitted_;

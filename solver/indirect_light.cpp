@@ -12,15 +12,23 @@ namespace patchlight {
 
 namespace {
 
-/// Irradiance per patch by everything but the emitters apart.
-PatchField<Rgb> indirect_irradiance(const RoughSolution& rough, bool apart)
+/// Irradiance per patch by everything but the emitters where they are apart: what must have arrived for B − E to leave.
+PatchField<Rgb> indirect_irradiance(const RoughSolution& rough, const EmittedLight& emitted,
+                                    const GatherOptions& options, const WorkMonitor& monitor)
 {
-    const FormFactorMatrix& F = rough.system.F;
-    PatchField<Rgb> H(rough.B.size(), Rgb(0.0));
-    for (std::size_t i = 0; i < H.size(); ++i)
-        for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k) {
-            const PatchId j(F.columns[k]);
-            H[PatchId(i)] += F.factors[k] * (apart ? rough.B[j] - rough.system.E[j] : rough.B[j]);
+    const PatchMesh& mesh = rough.exchange.mesh;
+    std::vector<SurfacePoint> middles;
+    for (const PatchId p : mesh.patches()) middles.push_back({mesh.centroid(p), mesh.surface(p), mesh.centroid(p)});
+    const bool exact = !rough.system.direct.empty();
+    const std::vector<Rgb> direct =
+        exact ? std::vector<Rgb>{} : emitted.at(rough.exchange, middles, options, monitor).irradiance;
+    PatchField<Rgb> H(mesh.patch_count(), Rgb(0.0));
+    for (const PatchId p : mesh.patches())
+        for (int band = 0; band < 3; ++band) {
+            const double rho = rough.system.rho[p][band];
+            if (!(rho > 0)) continue;
+            const double all = (rough.B[p][band] - rough.system.E[p][band]) / rho;
+            H[p][band] = std::max(0.0, all - (exact ? rough.system.direct[p] : direct[p.value])[band]);
         }
     return H;
 }
@@ -281,7 +289,7 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
     const Exchange& start = rough.exchange;
     const Scene& scene = start.scene;
     IndirectLight light(copy_of(scene, start.mesh),
-                        around_vertices(start.mesh, indirect_irradiance(rough, emitted.is_apart(start))));
+                        around_vertices(start.mesh, indirect_irradiance(rough, emitted, options.gather, monitor)));
     const LightCarrier carrier(start, emitted, light,
                                {options.target_error / 2, options.max_elements / 2, options.gather, options.mark},
                                monitor);

@@ -31,6 +31,8 @@ SolveReport solve(const RadiositySystem& system, Radiosity& B, const SolveOption
         return solve_conjugate_gradient(system, rows_of(system.F), B, options, monitor);
     case Solver::bicgstab:
         return solve_bicgstab(system, rows_of(system.F), B, options, monitor);
+    case Solver::hierarchical:
+        throw std::invalid_argument("links need the mesh, not rows: solve_hierarchical()");
     }
     throw std::invalid_argument("no such solver");
 }

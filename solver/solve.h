@@ -15,7 +15,8 @@ enum class Solver {
     jacobi,              ///< gathers; all values from the sweep before (what the lecture shows as Gauss–Seidel)
     gauss_seidel,        ///< gathers; the newest values
     conjugate_gradient,  ///< the fewest products with F; reciprocal factors only
-    bicgstab             ///< the same for factors that aren't reciprocal; two products an iteration
+    bicgstab,            ///< the same for factors that aren't reciprocal; two products an iteration
+    hierarchical         ///< links between groups of patches, see solve_hierarchical()
 };
 
 /// What is shot first.
@@ -41,11 +42,13 @@ struct SolveReport {
     double unshot = 0;           ///< share of the emitted power not yet shot; gathering: 0
     bool converged = false;
     std::size_t rays = 0;         ///< traced on demand
+    std::size_t links = 0;        ///< hierarchical: that carry light, each both ways
     std::vector<double> history;  ///< residual after each sweep or iteration; shooting: after 1, 2, 4, 8 … shots
 };
 
 /// Solves an assembled system by options.solver, from the start value in B (progressive: from E). Throws
-/// std::invalid_argument for conjugate gradients on rows that aren't reciprocal (make_reciprocal()), and Interrupted.
+/// std::invalid_argument for conjugate gradients on rows that aren't reciprocal (make_reciprocal()) and for
+/// hierarchical, and Interrupted.
 SolveReport solve(const RadiositySystem& system, Radiosity& B, const SolveOptions& options,
                   const WorkMonitor& monitor = {});
 

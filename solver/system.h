@@ -23,7 +23,8 @@ struct Exchange {
 /// The surfaces that emit.
 std::vector<SurfaceId> emitters(const Scene& scene);
 
-/// Exact light of the scene's emitters, in the order of emitters(); nothing when more than 500 surfaces emit.
+/// Exact light of the scene's emitters, in the order of emitters(); nothing when more than 500 surfaces emit, or
+/// few in a scene so large that finding what hides them would not end (10,000 surfaces and 300 emitters).
 std::optional<DirectLight> emitters_light(const Scene& scene, const WorkMonitor& monitor = {});
 
 /// The emitters' light that arrives at a point, exactly, W/m².

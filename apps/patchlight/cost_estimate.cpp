@@ -18,6 +18,8 @@ namespace {
 constexpr double area_per_squared_edge = 0.25;
 // Beside the rows: mesh, fields and their copies.
 constexpr double bytes_per_element = 1500;
+// Of an element, with its share of the tree; about 60 links.
+constexpr double bytes_of_links = 3000;
 
 double physical_memory()
 {
@@ -42,6 +44,8 @@ double solve_bytes(double elements, const AdaptiveOptions& options)
     const bool sampled = method == FormFactorMethod::hemisphere || method == FormFactorMethod::hemicube;
     const bool automatic = options.meshing.max_edge <= 0 && options.meshing.max_elements == 0;
     const auto patches = static_cast<std::size_t>(automatic ? std::ceil(elements / 4) : elements);
+    if (options.final.solver == Solver::hierarchical)
+        return static_cast<double>(patches) * bytes_of_links + mesh_bytes(elements);
     // Rows that aren't reciprocal are made so beside three copies, or transposed for their columns.
     const double copies = !sampled                                             ? 1
                           : options.final.solver == Solver::conjugate_gradient ? 4
@@ -92,11 +96,12 @@ void check_memory(const Scene& scene, const AdaptiveOptions& options, double lim
     const double fitting = fitting_elements(allowed_memory(limit), static_cast<double>(cost.elements), options);
     const bool dense = options.form_factors.method == FormFactorMethod::exact ||
                        options.form_factors.method == FormFactorMethod::quadrature;
-    require_memory(cost.bytes, limit,
-                   fmt::format("about {:.0f} elements fit: ask for fewer by --max-elements or a longer --max-edge{}",
-                               fitting,
-                               dense ? ", or take --form-factors hemisphere, whose rows don't grow with the elements"
-                                     : ", or for fewer --rays"));
+    require_memory(
+        cost.bytes, limit,
+        fmt::format("about {:.0f} elements fit: ask for fewer by --max-elements or a longer --max-edge{}", fitting,
+                    dense ? ", or take --form-factors hemisphere, whose rows don't grow with the elements, or --solver "
+                            "hierarchical"
+                          : ", or for fewer --rays"));
 }
 
 double uniform_elements(const Scene& scene, const MeshingOptions& meshing)

@@ -95,11 +95,11 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
                    "them as they are")
         ->check(CLI::IsMember(words(solver_names())))
         ->capture_default_str();
-    t.tolerance_option =
-        app.add_option("--tolerance", o.final.tolerance, "of the final solve; progressive: 0.01 unless given")
-            ->check(number_between(1e-12, 0.5))
-            ->type_name("T")
-            ->capture_default_str();
+    t.tolerance_option = app.add_option("--tolerance", o.final.tolerance,
+                                        "of the final solve; progressive: 0.01, hierarchical: 0.05 unless given")
+                             ->check(number_between(1e-12, 0.5))
+                             ->type_name("T")
+                             ->capture_default_str();
     app.add_option("--order", t.order, "what progressive shoots first")
         ->check(CLI::IsMember(words(order_names())))
         ->capture_default_str();
@@ -167,6 +167,8 @@ void finish_solve(SolveCommand& c, const Texts& t)
     o.final.solver = mode_of(solver_names(), t.solver);
     // Shots are dear: a sweep of gathering costs what a few of them do.
     if (o.final.solver == Solver::progressive && t.tolerance_option->count() == 0) o.final.tolerance = 0.01;
+    // What links carry may be wrong by this, not only the linear solve.
+    if (o.final.solver == Solver::hierarchical && t.tolerance_option->count() == 0) o.final.tolerance = 0.05;
     o.final.order = mode_of(order_names(), t.order);
     o.form_factors.method = mode_of(form_factor_names(), t.method);
     if (o.form_factors.resolution % 2 != 0) {

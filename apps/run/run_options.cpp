@@ -29,7 +29,8 @@ const ModeNames<Solver>& solver_names()
                                          {"jacobi", Solver::jacobi},
                                          {"gauss-seidel", Solver::gauss_seidel},
                                          {"conjugate-gradient", Solver::conjugate_gradient},
-                                         {"bicgstab", Solver::bicgstab}};
+                                         {"bicgstab", Solver::bicgstab},
+                                         {"hierarchical", Solver::hierarchical}};
     return names;
 }
 

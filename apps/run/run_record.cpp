@@ -79,6 +79,7 @@ CycleRecord cycle_in(const Json& json)
     if (solve.contains("history")) {
         r.solver_history = solve.at("history").get<std::vector<double>>();
     }
+    r.links = solve.value("links", std::size_t{0});
     r.splits = json.at("splits").get<std::size_t>();
     r.lines = line_counts_in(json.at("lines"));
     r.energy = energy_in(json.at("energy"));
@@ -133,6 +134,7 @@ CycleRecord record_of(const AdaptiveStep& step)
     r.solver_residual = step.solved.residual;
     r.solver_converged = step.solved.converged;
     r.solver_history = step.solved.history;
+    r.links = step.solved.links;
     r.splits = step.splits;
     r.lines = step.lines;
     r.energy = step.energy;
@@ -154,7 +156,8 @@ Json json_of(const CycleRecord& r)
               {"iterations", r.solver_iterations},
               {"residual", r.solver_residual},
               {"converged", r.solver_converged},
-              {"history", r.solver_history}}},
+              {"history", r.solver_history},
+              {"links", r.links}}},
             {"splits", r.splits},
             {"lines", json_of(r.lines)},
             {"energy", json_of(r.energy)},

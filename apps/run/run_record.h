@@ -21,6 +21,7 @@ struct CycleRecord {
     Solver solver = Solver::gauss_seidel;
     std::size_t solver_iterations = 0;
     double solver_residual = 0;
+    std::size_t links = 0;  ///< of the hierarchical solver
     bool solver_converged = false;
     std::vector<double> solver_history;                ///< residuals on the way, as SolveReport has them
     std::size_t splits = 0;                            ///< edges that the plan halves next, and lines that it inserts

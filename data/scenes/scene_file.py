@@ -122,7 +122,7 @@ class SceneFile:
     def write_obj(self, stem):
         folder = Path(__file__).parent
         index = {}
-        lines = [f"# {self.title}", f"# unit: {self.unit}", f"mtllib {stem}.mtl"]
+        lines = [f"# {self.title}", f"# unit: {self.unit}", f"mtllib {Path(stem).name}.mtl"]
         body = []
         last = (None, None)
         for obj, material, polygon in self.faces:

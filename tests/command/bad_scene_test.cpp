@@ -61,7 +61,8 @@ TEST_F(BadSceneTest, AMisspeltMaterialIsNamedAndTheOthersListed)
         const std::string value = option == std::string("--emitter") ? "lmap=3" : "lmap";
         const Outcome outcome = run({"inspect", write_scene(), option, value});
         EXPECT_EQ(outcome.code, 3);
-        EXPECT_THAT(outcome.err, AllOf(StartsWith("error[material]: "), HasSubstr("lmap"), HasSubstr("lamp, red, white")));
+        EXPECT_THAT(outcome.err,
+                    AllOf(StartsWith("error[material]: "), HasSubstr("lmap"), HasSubstr("lamp, red, white")));
     }
 }
 

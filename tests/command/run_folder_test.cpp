@@ -93,7 +93,8 @@ TEST_F(RunFolderTest, AFinishedRunSaysSoAndStays)
     std::vector<std::string> changed = solve("run");
     write_text(folder_ / "room.mtl", std::string(material_text) + "# a comment changes nothing\n");
     EXPECT_EQ(run(changed).code, 0);
-    write_text(folder_ / "room.mtl", "newmtl white\nKd .6 .7 .7\nnewmtl red\nKd .6 .1 .1\nnewmtl lamp\nKd 0 0 0\nKe 10 9 8\n");
+    write_text(folder_ / "room.mtl",
+               "newmtl white\nKd .6 .7 .7\nnewmtl red\nKd .6 .1 .1\nnewmtl lamp\nKd 0 0 0\nKe 10 9 8\n");
     const Outcome scene = run(changed);
     EXPECT_EQ(scene.code, 2);
     EXPECT_THAT(scene.err, HasSubstr("earlier state"));
@@ -170,7 +171,8 @@ TEST_P(SignalTest, EndsInTimeWithAValidPartThatCanBeResumed)
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, SignalTest,
-                         ::testing::Values(std::pair(SIGINT, 130), std::pair(SIGTERM, 143), std::pair(SIGKILL, -SIGKILL)),
+                         ::testing::Values(std::pair(SIGINT, 130), std::pair(SIGTERM, 143),
+                                           std::pair(SIGKILL, -SIGKILL)),
                          [](const auto& chosen) { return std::string(sigabbrev_np(chosen.param.first)); });
 
 TEST_F(RunFolderTest, ARunThatMissesItsTargetIsFour)

@@ -58,7 +58,8 @@ TEST_F(SameBytesTest, WhereTheDecimalPointIsAComma)
     std::filesystem::create_directory(locales);
     const std::string make = "localedef -i de_DE -f UTF-8 --no-archive " + locales + "/de_DE.UTF-8 > /dev/null 2>&1";
     ASSERT_EQ(std::system(make.c_str()), 0) << "needs the Debian package locales";
-    const Surroundings german{.environment = {{"LOCPATH", locales}, {"LC_ALL", "de_DE.UTF-8"}, {"LANG", "de_DE.UTF-8"}}};
+    const Surroundings german{
+        .environment = {{"LOCPATH", locales}, {"LC_ALL", "de_DE.UTF-8"}, {"LANG", "de_DE.UTF-8"}}};
     solve_into("point");
     solve_into("comma", {}, german);
     expect_same("point", "comma");

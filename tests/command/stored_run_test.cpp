@@ -75,14 +75,16 @@ TEST_F(StoredRunTest, APixelOfViewExrTimesPiIsWhatProbeSaysOfThePointItShows)
         for (int band = 0; band < 3; ++band) {
             const double B = std::stod(rows[i + 1][3 + static_cast<std::size_t>(band)]);
             // Single precision in the file, and the last bits of coordinates relative to another centre.
-            EXPECT_NEAR(std::numbers::pi * image.at(pixels[i].first, pixels[i].second)[band], B, 1e-6 * std::max(B, 1e-3));
+            EXPECT_NEAR(std::numbers::pi * image.at(pixels[i].first, pixels[i].second)[band], B,
+                        1e-6 * std::max(B, 1e-3));
         }
     }
 }
 
 TEST_F(StoredRunTest, ProbeAnswersEveryRowInOrder)
 {
-    const Outcome outcome = probe("x,y,z,nx,ny,nz\n.50,0,.5,0,1,0\n.5,0,.5,0,-1,0\n0,0,0,0,1,0\n5,5,5,0,1,0\n.5,.5,.5,0,-1,0\n");
+    const Outcome outcome =
+        probe("x,y,z,nx,ny,nz\n.50,0,.5,0,1,0\n.5,0,.5,0,-1,0\n0,0,0,0,1,0\n5,5,5,0,1,0\n.5,.5,.5,0,-1,0\n");
     EXPECT_EQ(outcome.code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("2 of 5 points"));
     const auto rows = rows_of(outcome.out);
@@ -112,9 +114,10 @@ TEST_F(StoredRunTest, PointsThatCannotBeReadAreTwoWithTheLine)
 
 TEST_F(StoredRunTest, RendersAnyView)
 {
-    for (const std::vector<std::string>& how :
-         {std::vector<std::string>{"--shade", "flat", "--cycle", "first"}, {"--wireframe", "--cycle", "0"},
-          {"--view", "front", "--exposure", "-2.5"}, {"--from", "0.9,0.9,0.9", "--to", "0.1,0.1,0.1", "--fov", "80"}}) {
+    for (const std::vector<std::string>& how : {std::vector<std::string>{"--shade", "flat", "--cycle", "first"},
+                                                {"--wireframe", "--cycle", "0"},
+                                                {"--view", "front", "--exposure", "-2.5"},
+                                                {"--from", "0.9,0.9,0.9", "--to", "0.1,0.1,0.1", "--fov", "80"}}) {
         std::vector<std::string> words{"render", path("run"), "-o", path("pictures/a.png"), "--size", "40x30"};
         words.insert(words.end(), how.begin(), how.end());
         const Outcome outcome = run(words);
@@ -147,7 +150,8 @@ TEST_F(StoredRunTest, WhatIsNoRunIsTwoAndABrokenOneThree)
     EXPECT_EQ(run({"render", path("nowhere"), "-o", path("a.png")}).code, 2);
     EXPECT_EQ(run({"render", path("scratch"), "-o", path("a.png")}).code, 2);
     const std::string glb = text_of(path("run/solution.glb"));
-    for (const std::string& broken : {glb.substr(0, glb.size() / 2), std::string("glTF"), std::string(), std::string(5000, 'x')}) {
+    for (const std::string& broken :
+         {glb.substr(0, glb.size() / 2), std::string("glTF"), std::string(), std::string(5000, 'x')}) {
         write_text(path("run/solution.glb"), broken);
         const Outcome outcome = run({"render", path("run"), "-o", path("a.png")});
         EXPECT_EQ(outcome.code, 3) << outcome.err;
