@@ -171,10 +171,10 @@ IndirectOptions indirect_options(const AdaptiveOptions& options)
     return {.target_error = options.target_error,
             .max_elements = options.max_elements,
             .rays = options.gather.rays,
-            .rough_rays = options.estimate.rays,
             .directions = options.form_factors.directions,
             .gather = options.gather,
-            .mark = {}};
+            // What it misses in dark places, light carries on from there.
+            .mark = {.local = 0.5}};
 }
 
 bool finished(const PatchMesh& mesh, const ErrorEstimate& error, const RefinementPlan& plan, int cycle,

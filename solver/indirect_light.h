@@ -24,7 +24,7 @@ public:
     double mesh_error = 0;  ///< √∫|ρ ΔH|² dA that its mesh leaves, W/m²·m
     double noise = 0;       ///< and that its rays leave
     std::size_t rays = 0;   ///< traced for it
-    int vertex_rays = 0;    ///< at each vertex at the end
+    int vertex_rays = 0;    ///< at each node
 
     double error() const;
 
@@ -39,8 +39,7 @@ private:
 struct IndirectOptions {
     double target_error = 0;          ///< of the whole solution, relative; 0: as good as the budget's mesh
     std::size_t max_elements = 8000;  ///< of the whole solution's mesh: half of them for this one
-    int rays = 0;                     ///< at each vertex at the end, 16 … 65536; 0: as many as the error asks for
-    int rough_rays = 128;             ///< while its mesh is refined
+    int rays = 0;                     ///< at each node, 16 … 65536; 0: as many as the error asks for
     HemisphereDirections directions = HemisphereDirections::stratified;
     GatherOptions gather;  ///< seed, and shadow rays where direct light is sampled
     MarkOptions mark;
@@ -55,11 +54,12 @@ struct RoughSolution {
 };
 
 /// Solves the indirect light. First that of the rough solution, averaged at its vertices. Then, from a coarse mesh with
-/// the contact lines, cycles of gathering with `rough_rays` at nodes and centroids and halving edges, until the mesh
-/// leaves 0.4 of the target error or half the budget is used. Then twice all rays, from the light of the sweep before:
-/// each sweep adds a bounce of linear light. What rays meet is linear light on a mesh refined for the emitters' light.
-/// The noise is measured: some hundred points gathered twice, with other directions.
-/// Depends on the scene and the options alone. Throws Interrupted.
+/// the contact lines, cycles of gathering at nodes and halving edges, until linear elements would miss 1.2 of the
+/// target error, quadratic ones some 0.4, or half the budget is used; light is gathered twice, by other rays, half of
+/// them each, so that noise isn't taken for error. Then two sweeps over the kept hits from the light of the sweep
+/// before, a bounce each. What rays meet is quadratic light on a mesh refined for the emitters' light. Without a number
+/// of rays a pilot of some hundred points finds how many leave 0.4 of the target error. Both errors, what elements and
+/// what rays miss, are measured at the end. Depends on the scene and the options alone. Throws Interrupted.
 IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emitted, const IndirectOptions& options,
                              const WorkMonitor& monitor = {});
 

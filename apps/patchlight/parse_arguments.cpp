@@ -126,7 +126,7 @@ void add_light(CLI::App& app, SolveCommand& c, Texts& t)
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--vertex-rays", o.gather.rays,
-                   "rays per vertex where indirect light is gathered; 0: as many as the error asks for, 512 with "
+                   "rays per node where indirect light is gathered; 0: as many as the error asks for, 512 with "
                    "--refine none")
         ->check(whole_between(0, 65536))
         ->type_name("N")

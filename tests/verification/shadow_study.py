@@ -107,7 +107,7 @@ def main():
                     for budget in arguments.budgets:
                         run = Path(folder) / f"{case}-{refine}-{direct}-{budget}"
                         measure.solve(arguments.command, case, run, "--refine", refine, "--direct", direct,
-                                      "--max-elements", budget, "--iterations", 60)
+                                      "--max-elements", budget, "--iterations", 60, "--local", 0)
                         error = measure.errors(measure.probe(arguments.command, run, rows, folder), known)[0]
                         line += f" {triangles(arguments.command, run, folder):,} | {error:.2e} |"
                     print(line, flush=True)
