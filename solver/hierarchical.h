@@ -15,9 +15,8 @@ struct HierarchicalOptions {
 
 struct HierarchicalSolution {
     SolveReport report;     ///< residual: the larger of the links' estimated error and the linear solve's bound
-    EnergyBalance energy;   ///< of an open scene, what reaches nothing counts as escaped
-    double link_error = 0;  ///< √Σ of the links' squared errors / √∫|B − E|² dA: an estimate, not a bound
-    std::size_t links = 0;  ///< that carry light, each both ways
+    EnergyBalance energy;   ///< what is lost to backs and outside is found by rays, see lost_light()
+    double link_error = 0;  ///< relative, of ρ H, from LinkOperator::squared_error(): an estimate, not a bound
     std::size_t nodes = 0;  ///< of the tree
     std::size_t rays = 0;
     std::size_t bytes = 0;  ///< of tree and links at the end

@@ -25,7 +25,7 @@ struct NodeLight {
     std::vector<float> rho;         ///< root of the mean of ρ² over patches and bands
 };
 
-/// What a finished links' refinement says.
+/// How a refinement of links went.
 struct LinkingReport {
     std::size_t links = 0;  ///< that carry light
     std::size_t rays = 0;
