@@ -265,6 +265,62 @@ Radiosity at_middles(const Scene& scene, const PatchMesh& mesh, const LightCarri
     return B;
 }
 
+/// A mesh, and the light on it.
+struct LitMesh {
+    PatchMesh mesh;
+    IndirectLight light;
+};
+
+/// Halves edges until linear elements miss less than `enough`, or half the budget is used. `light` is what there is to
+/// begin with.
+LitMesh refined_for(const RoughSolution& rough, const LightCarrier& carrier, Gathered& gathered, IndirectLight light,
+                    double enough, const IndirectOptions& options, const WorkMonitor& monitor)
+{
+    const Exchange& start = rough.exchange;
+    const Scene& scene = start.scene;
+    const MeshingOptions budget{.max_elements = options.max_elements / 2};
+    PatchMesh mesh = coarse_mesh(scene, options.max_elements);
+    QuadraticRadiosity leaving = carrier.leaving(light);
+    for (int cycle = 0;; ++cycle) {
+        const PatchLocator locator(mesh);
+        const Exchange exchange{scene, start.caster, mesh, locator, start.direct};
+        GatheredLight found;
+        const LightAtPoints at_nodes = [&](std::span<const SurfacePoint> points, const WorkMonitor& m) {
+            return found = gathered.at(points, leaving, m);
+        };
+        const ErrorEstimate error = evaluate(exchange, at_nodes, Indicator::middles, 0, 0, monitor).error;
+        light = light_on(copy_of(scene, mesh), element_points(exchange), mean_of_both(found));
+        leaving = carrier.leaving(light);
+        const ErrorEstimate counted =
+            rough.weights ? weighted(error, weights_on(scene, mesh, start.locator, *rough.weights)) : error;
+        const RefinementPlan plan = mark(scene, mesh, at_middles(scene, mesh, carrier, leaving), counted, options.mark);
+        const bool full = 20 * mesh.patch_count() >= 19 * budget.max_elements;
+        if (plan.empty() || full || error.total < enough || cycle == 60) return {std::move(mesh), std::move(light)};
+        mesh = refined(scene, mesh, plan, budget);
+    }
+}
+
+/// Two sweeps over the kept hits, a bounce each, and what is left of errors after them.
+IndirectLight swept(const Exchange& start, const LightCarrier& carrier, Gathered& gathered, LitMesh lit,
+                    const Probes& probes, const WorkMonitor& monitor)
+{
+    const Scene& scene = start.scene;
+    const PatchMesh& mesh = lit.mesh;
+    const PatchLocator locator(mesh);
+    const ElementPoints nodes = element_points({scene, start.caster, mesh, locator, start.direct});
+    QuadraticRadiosity leaving;
+    GatheredLight found;
+    for (int sweep = 0; sweep < 2; ++sweep) {
+        leaving = carrier.leaving(lit.light);
+        found = gathered.anew(nodes.points, leaving, monitor);
+        lit.light = light_on(copy_of(scene, mesh), nodes, mean_of_both(found));
+    }
+    lit.light.noise = noise_of(scene, nodes.points, vertex_areas(scene, mesh), found);
+    lit.light.mesh_error =
+        interpolation_error(scene, mesh, nodes, found, probes, gathered.anew(probes.points, leaving, monitor));
+    return std::move(lit.light);
+}
+
 }  // namespace
 
 IndirectLight::IndirectLight(PatchMesh mesh, VertexField<Rgb> at_vertices, MidpointRadiosity at_middles)
@@ -293,9 +349,9 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
     const LightCarrier carrier(start, emitted, light,
                                {options.target_error / 2, options.max_elements / 2, options.gather, options.mark},
                                monitor);
-    QuadraticRadiosity leaving = carrier.leaving(light);
     // Without a target: about as good as the mesh will be in the end, with twice the carrier's elements.
     const double target = options.target_error > 0 ? options.target_error : 1.5 * carrier.error();
+    const QuadraticRadiosity leaving = carrier.leaving(light);
     const double goal = 0.4 * target * carrier.norm(leaving);
     const Probes probes = spread_probes(scene, start.mesh, 512, options.gather.seed);
     std::size_t rays = 0;
@@ -305,39 +361,8 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
 
     Gathered gathered(carrier,
                       {.rays = vertex_rays / 2, .directions = options.directions, .seed = options.gather.seed});
-    const MeshingOptions budget{.max_elements = options.max_elements / 2};
-    PatchMesh mesh = coarse_mesh(scene, options.max_elements);
-    for (int cycle = 0;; ++cycle) {
-        const PatchLocator locator(mesh);
-        const Exchange exchange{scene, start.caster, mesh, locator, start.direct};
-        GatheredLight found;
-        const LightAtPoints at_nodes = [&](std::span<const SurfacePoint> points, const WorkMonitor& m) {
-            return found = gathered.at(points, leaving, m);
-        };
-        const ErrorEstimate error = evaluate(exchange, at_nodes, Indicator::middles, 0, 0, monitor).error;
-        const ElementPoints nodes = element_points(exchange);
-        light = light_on(copy_of(scene, mesh), nodes, mean_of_both(found));
-        leaving = carrier.leaving(light);
-        const ErrorEstimate counted =
-            rough.weights ? weighted(error, weights_on(scene, mesh, start.locator, *rough.weights)) : error;
-        const RefinementPlan plan = mark(scene, mesh, at_middles(scene, mesh, carrier, leaving), counted, options.mark);
-        const bool full = 20 * mesh.patch_count() >= 19 * budget.max_elements;
-        if (plan.empty() || full || error.total < 3 * goal || cycle == 60) break;
-        mesh = refined(scene, mesh, plan, budget);
-    }
-
-    const PatchLocator locator(mesh);
-    const Exchange exchange{scene, start.caster, mesh, locator, start.direct};
-    const ElementPoints nodes = element_points(exchange);
-    for (int sweep = 0; sweep < 2; ++sweep) {
-        leaving = carrier.leaving(light);
-        const GatheredLight found = gathered.anew(nodes.points, leaving, monitor);
-        light = light_on(copy_of(scene, mesh), nodes, mean_of_both(found));
-        light.noise = noise_of(scene, nodes.points, vertex_areas(scene, mesh), found);
-        if (sweep == 1)
-            light.mesh_error =
-                interpolation_error(scene, mesh, nodes, found, probes, gathered.anew(probes.points, leaving, monitor));
-    }
+    LitMesh lit = refined_for(rough, carrier, gathered, std::move(light), 3 * goal, options, monitor);
+    light = swept(start, carrier, gathered, std::move(lit), probes, monitor);
     light.rays = rays + gathered.rays();
     light.vertex_rays = vertex_rays;
     return light;
