@@ -43,6 +43,7 @@ void HitRows::add(std::span<const SurfacePoint> points, const WorkMonitor& monit
     const std::size_t room = (options_.most_bytes - std::min(bytes_, options_.most_bytes)) / row_bytes;
     const std::size_t count = std::min(points.size(), room);
     bytes_ += count * row_bytes;
+    keeps_all_ = keeps_all_ && count == points.size();
     rays_ += for_each_row<Scratch>(count, monitor, [&](std::size_t i, Scratch& scratch) {
         if (reflects(points_[first + i])) trace(points_[first + i], kept_[first + i], scratch);
     });

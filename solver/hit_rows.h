@@ -31,7 +31,7 @@ public:
     std::vector<Rgb> irradiance(std::span<const std::uint32_t> points, const QuadraticRadiosity& leaving,
                                 const WorkMonitor& monitor = {});
 
-    std::size_t size() const { return points_.size(); }
+    bool keeps_all() const { return keeps_all_; }
     std::size_t rays() const { return rays_; }  ///< traced so far
 
 private:
@@ -62,6 +62,7 @@ private:
     std::vector<SurfacePoint> points_;
     std::vector<std::vector<Hit>> kept_;  ///< of each point; empty: not kept
     std::size_t bytes_ = 0;
+    bool keeps_all_ = true;
     std::size_t rays_ = 0;
 };
 

@@ -97,6 +97,7 @@ public:
     }
 
     std::size_t rays() const { return rows_[0].rays() + rows_[1].rays(); }
+    bool keeps_all() const { return rows_[0].keeps_all() && rows_[1].keeps_all(); }
 
 private:
     struct Key {
@@ -300,7 +301,7 @@ LitMesh refined_for(const RoughSolution& rough, const LightCarrier& carrier, Gat
     }
 }
 
-/// Two sweeps over the kept hits, a bounce each, and what is left of errors after them.
+/// Two sweeps over the kept hits, a bounce each, or one where not all are kept; and what is left of errors after them.
 IndirectLight swept(const Exchange& start, const LightCarrier& carrier, Gathered& gathered, LitMesh lit,
                     const Probes& probes, const WorkMonitor& monitor)
 {
@@ -310,7 +311,9 @@ IndirectLight swept(const Exchange& start, const LightCarrier& carrier, Gathered
     const ElementPoints nodes = element_points({scene, start.caster, mesh, locator, start.direct});
     QuadraticRadiosity leaving;
     GatheredLight found;
-    for (int sweep = 0; sweep < 2; ++sweep) {
+    // What isn't kept would be traced again each time.
+    const int sweeps = gathered.keeps_all() ? 2 : 1;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
         leaving = carrier.leaving(lit.light);
         found = gathered.anew(nodes.points, leaving, monitor);
         lit.light = light_on(copy_of(scene, mesh), nodes, mean_of_both(found));
@@ -355,13 +358,14 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
     const double goal = 0.4 * target * carrier.norm(leaving);
     const Probes probes = spread_probes(scene, start.mesh, 512, options.gather.seed);
     std::size_t rays = 0;
-    const int vertex_rays = options.rays > 0 ? options.rays
-                            : goal > 0       ? rays_for(goal, carrier, leaving, probes, options, rays, monitor)
-                                             : 64;
+    int vertex_rays = options.rays;
+    if (vertex_rays == 0 && goal > 0) vertex_rays = rays_for(goal, carrier, leaving, probes, options, rays, monitor);
+    // Few rays miss what is small and bright, and don't know it.
+    if (options.rays == 0 && options.target_error == 0) vertex_rays = std::max(vertex_rays, 512);
 
     Gathered gathered(carrier,
                       {.rays = vertex_rays / 2, .directions = options.directions, .seed = options.gather.seed});
-    LitMesh lit = refined_for(rough, carrier, gathered, std::move(light), 3 * goal, options, monitor);
+    LitMesh lit = refined_for(rough, carrier, gathered, std::move(light), 2 * goal, options, monitor);
     light = swept(start, carrier, gathered, std::move(lit), probes, monitor);
     light.rays = rays + gathered.rays();
     light.vertex_rays = vertex_rays;

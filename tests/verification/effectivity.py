@@ -6,6 +6,7 @@
 Solves each scene with --pictures none and lets `verify --cycle all` measure every cycle of the run by the same paths.
 Effectivity is estimated over measured error, with its 95 % range. The last columns: share of points whose error is surely
 beyond twice the estimate, their patch's own and the whole one; in brackets the points too near to it for the paths' noise.
+At the end each scene's range from the second cycle on.
 """
 
 import argparse
@@ -55,6 +56,7 @@ def main():
     print("| scene | cycle | elements | estimated | measured (95 %) | effectivity (95 %) | the estimate |"
           " beyond 2 × patch's | beyond 2 × whole |")
     print("|---|---:|---:|---:|---:|---:|---|---:|---:|")
+    ranges = []
     with tempfile.TemporaryDirectory() as folder:
         for scene in arguments.scene:
             run = Path(folder) / scene
@@ -63,6 +65,14 @@ def main():
             for v in cycles:
                 if v["cycle"] % arguments.every == 0 or v is cycles[-1]:
                     row(scene, v)
+            later = cycles[1:] or cycles
+            found = [v["effectivity"] for v in later if v["effectivity"] is not None]
+            beyond = max(v["within_twice_the_estimate"]["mean"]["beyond"] for v in later)
+            ranges.append(f"| {scene} | {len(later)} | {100 * later[0]['estimated_error']:.2f} → "
+                          f"{100 * later[-1]['estimated_error']:.2f} % | {min(found):.2f}–{max(found):.2f} |"
+                          f" {100 * beyond:.1f} % |")
+    print("\n| scene | cycles | estimated, first and last | estimated / measured | points beyond 2 × the estimate, at most |")
+    print("|---|---:|---:|---:|---:|", *ranges, sep="\n")
 
 
 if __name__ == "__main__":
