@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -21,6 +22,7 @@ using namespace patchlight::reference;
 struct Settings {
     std::string scene;
     std::string output;
+    std::string at;  ///< a file of points; empty: random ones
     std::size_t points = 2000;
     PathOptions paths;
 };
@@ -30,9 +32,38 @@ struct Row {
     Measured reflected;
 };
 
+/// The point on the polygon that it lies on and whose front the normal names.
+SurfacePoint placed(const ReferenceScene& scene, const Vec3& p, const Vec3& normal)
+{
+    for (std::size_t i = 0; i < scene.polygons().size(); ++i) {
+        const Polygon& polygon = scene.polygons()[i];
+        const bool in_plane = std::abs(glm::dot(polygon.n, p) - polygon.offset) < 1e-6 * scene.diameter();
+        if (in_plane && glm::dot(polygon.n, normal) > 0.99 &&
+            polygon.contains(Vec2(glm::dot(polygon.u, p), glm::dot(polygon.v, p))))
+            return {i, p};
+    }
+    throw std::runtime_error(fmt::format("no surface at {} {} {}", p.x, p.y, p.z));
+}
+
+/// Lines x,y,z,nx,ny,nz and whatever follows; those that begin otherwise are left out.
+std::vector<SurfacePoint> points_of(const ReferenceScene& scene, const std::string& file)
+{
+    std::ifstream in(file);
+    if (!in) throw std::runtime_error("can't read " + file);
+    std::vector<SurfacePoint> points;
+    for (std::string line; std::getline(in, line);) {
+        Vec3 p, n;
+        if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &p.x, &p.y, &p.z, &n.x, &n.y, &n.z) == 6)
+            points.push_back(placed(scene, p, n));
+    }
+    return points;
+}
+
 std::vector<Row> measure(const ReferenceScene& scene, const Settings& settings)
 {
-    const std::vector<SurfacePoint> points = sample_points(scene, settings.points, settings.paths.seed);
+    const std::vector<SurfacePoint> points = settings.at.empty()
+                                                 ? sample_points(scene, settings.points, settings.paths.seed)
+                                                 : points_of(scene, settings.at);
     std::vector<Row> rows(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const Polygon& polygon = scene.polygons()[points[i].polygon];
@@ -60,9 +91,10 @@ void write(std::ostream& out, const ReferenceScene& scene, const Settings& s, co
 {
     const PathOptions& p = s.paths;
     const std::string name = std::filesystem::path(s.scene).filename().string();
-    out << fmt::format("# path_traced_reference data/scenes/{} --points {} --replicates {} --light-strata {} "
+    const std::string points = s.at.empty() ? fmt::format("--points {}", s.points) : "--at this file";
+    out << fmt::format("# path_traced_reference data/scenes/{} {} --replicates {} --light-strata {} "
                        "--direction-strata {} --seed {}\n",
-                       name, s.points, p.replicates, p.light_strata, p.direction_strata, p.seed);
+                       name, points, p.replicates, p.light_strata, p.direction_strata, p.seed);
     out << fmt::format("# seed {}; a point: {} paths, {} shadow rays to each emitter\n", p.seed,
                        p.replicates * p.direction_strata * p.direction_strata,
                        p.replicates * p.light_strata * p.light_strata);
@@ -88,6 +120,7 @@ int main(int argc, char** argv)
     app.option_defaults()->always_capture_default();
     app.add_option("scene", settings.scene, "OBJ file")->required();
     app.add_option("-o", settings.output, "CSV file; stdout without");
+    app.add_option("--at", settings.at, "points to measure instead: lines x,y,z,nx,ny,nz of a CSV file");
     app.add_option("--points", settings.points)->check(CLI::PositiveNumber);
     app.add_option("--replicates", settings.paths.replicates)->check(CLI::Range(2, 10000));
     app.add_option("--light-strata", settings.paths.light_strata)->check(CLI::PositiveNumber);
