@@ -54,13 +54,13 @@ struct RoughSolution {
 };
 
 /// Solves the indirect light. First that of the rough solution, averaged at its vertices. Then, from a coarse mesh with
-/// the contact lines, cycles of gathering at nodes and halving edges, until linear elements would miss 0.8 of the
-/// target error, quadratic ones some 0.3, or half the budget is used; light is gathered twice, by other rays, half of
-/// them each, so that noise isn't taken for error. Then two sweeps over the kept hits, one where they aren't all kept,
-/// from the light of the sweep before, a bounce each. What rays meet is quadratic light on a mesh refined for the
-/// emitters' light. Without a number of rays a pilot of some hundred points finds how many leave 0.4 of the target
-/// error, 512 at least where there is only a budget. Both errors, what elements and what rays miss, are measured at the
-/// end. Depends on the scene and the options alone. Throws Interrupted.
+/// the contact lines, cycles of gathering at nodes and halving edges, until linear elements would miss 1.2 of the
+/// target error (0.8 where there is only a budget), quadratic ones some 0.4, or half the budget is used; light is
+/// gathered twice, by other rays, half of them each, so that noise isn't taken for error. Then two sweeps over the kept
+/// hits, one where they aren't all kept, from the light of the sweep before, a bounce each. What rays meet is quadratic
+/// light on a mesh refined for the emitters' light. Without a number of rays a pilot of some hundred points finds how
+/// many leave 0.4 of the target error, 512 at least where there is only a budget. Both errors, what elements and what
+/// rays miss, are measured at the end. Depends on the scene and the options alone. Throws Interrupted.
 IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emitted, const IndirectOptions& options,
                              const WorkMonitor& monitor = {});
 

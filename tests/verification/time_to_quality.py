@@ -21,7 +21,7 @@ from pathlib import Path
 import measure
 
 SCENE, OPTIONS = "cornell-box", ["--unit", "mm"]
-TARGETS = (0.05, 0.03, 0.02, 0.01, 0.007, 0.005, 0.004)
+TARGETS = (0.05, 0.03, 0.02, 0.01, 0.007, 0.005, 0.004, 0.003)
 LIMITS = {0.05: 0.5, 0.02: 2.0, 0.01: 10.0}  # CPU seconds for this relative RMS
 
 
