@@ -11,8 +11,6 @@ namespace {
 
 constexpr int set_count = 32;
 constexpr int least_shadow_rays = 16;
-/// Every row asks each of them: with more it would be the sources that take the time, and each matters little.
-constexpr std::size_t most_sources = 500;
 constexpr std::uint64_t shadow_stream = 0x5ad0ULL << 48;  // other random numbers than the directions'
 
 }  // namespace

@@ -29,7 +29,11 @@ struct RowScratch {
 /// included, so that the sum over everything stays. Keeps references to all it is made of.
 class RowSampler {
 public:
-    /// `sources`: the surfaces that may be seen by Lambert's formula (emitters). Of more than 500 none is: rays alone.
+    /// Every row asks each source: with more it would be they that take the time, and each matters little.
+    static constexpr std::size_t most_sources = 500;
+
+    /// `sources`: the surfaces that may be seen by Lambert's formula (emitters). Of more than most_sources none is:
+    /// rays alone.
     RowSampler(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const PatchLocator& locator,
                std::span<const SurfaceId> sources, const FormFactorOptions& options);
 

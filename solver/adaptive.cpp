@@ -83,8 +83,9 @@ struct Emitted {
                 return discontinuities(scene, exact ? &*exact : nullptr, options.lines, monitor);
             });
         used = options.direct == Direct::exact && exact ? &*exact : nullptr;
-        if (options.direct == Direct::sampled)
-            for (const SurfaceId s : emitters(scene)) light.sources.emplace_back(scene, s);
+        const std::vector<SurfaceId> sources = emitters(scene);
+        if (options.direct == Direct::sampled && sources.size() <= RowSampler::most_sources)
+            for (const SurfaceId s : sources) light.sources.emplace_back(scene, s);
     }
 
     std::optional<DirectLight> exact;
@@ -198,7 +199,8 @@ Stage stage_of(int cycle, bool last, const AdaptiveOptions& options)
 }
 
 /// How much the patches of the uniform mesh count for what is looked at; empty: all alike.
-PatchField<double> weights_of(const Exchange& coarse, const RadiositySystem& system, const AdaptiveOptions& options)
+PatchField<double> weights_of(const Exchange& coarse, const RadiositySystem& system, const AdaptiveOptions& options,
+                              Stages& stages)
 {
     if (options.looked_at.empty()) return {};
     std::vector<PatchId> seen;
@@ -207,9 +209,13 @@ PatchField<double> weights_of(const Exchange& coarse, const RadiositySystem& sys
         seen.push_back(coarse.locator.locate(point.surface, static_cast<float>(q.x), static_cast<float>(q.y)));
     }
     const PatchField<double> shares = seen_shares(coarse.mesh.patch_count(), seen);
-    const RadiositySystem assembled = system.F.size() > 0 ? RadiositySystem{} : assemble(coarse, options.form_factors);
-    const RadiositySystem& rows = system.F.size() > 0 ? system : assembled;
-    return importance_weights(rows, importance(rows, rows_of(rows.F), shares));
+    return stages.run("importance", &StageSeconds::solve, coarse.mesh.patch_count(), [&](const WorkMonitor& monitor) {
+        const bool has_rows = system.F.size() > 0;
+        const RadiositySystem assembled =
+            has_rows ? RadiositySystem{} : assemble(coarse, options.form_factors, monitor);
+        const RadiositySystem& rows = has_rows ? system : assembled;
+        return importance_weights(rows, importance(rows, rows_of(rows.F), shares, {.tolerance = 0.01}, monitor));
+    });
 }
 
 /// What to change; `counted` is the error as far as it counts for what is looked at.
@@ -243,7 +249,8 @@ public:
              Stages& stages)
         : emitted_(emitted), options_(options), mesh_(first_mesh(scene, options)),
           locator_(mesh_), coarse_{scene, caster, mesh_, locator_, emitted.used},
-          patches_(solve_patches(coarse_, options, stages)), weights_(weights_of(coarse_, patches_.system, options))
+          patches_(solve_patches(coarse_, options, stages)),
+          weights_(weights_of(coarse_, patches_.system, options, stages))
     {
         if (options.refine == Refine::none) return;
         const RoughSolution rough{coarse_, patches_.system, patches_.B, weights_.empty() ? nullptr : &weights_};

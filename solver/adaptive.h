@@ -35,7 +35,7 @@ struct AdaptiveOptions {
     LineOptions lines;
     Refine refine = Refine::both;
     Elements elements = Elements::linear;  ///< of the last mesh's solution; errors are estimated for linear ones
-    Direct direct = Direct::exact;         ///< scenes of more than 500 emitting surfaces are sampled all the same
+    Direct direct = Direct::exact;         ///< too many emitters (emitters_light()): by the rays of indirect light
     int iterations = 40;                   ///< refinements at most, ≥ 1
     double target_error = 0;               ///< stop when the estimated error is below; 0 = go on to the budget
     std::size_t max_elements = 8000;       ///< budget of patches

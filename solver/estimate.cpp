@@ -122,6 +122,7 @@ Evaluation evaluate(const Exchange& exchange, const LightAtPoints& light, Indica
     const ExtraPoints extra = extra_points(exchange, indicator);
     GatheredLight arriving = light(extra.points, monitor);
     share_irradiance(exchange, crease_angle, arriving.irradiance);
+    if (!arriving.again.empty()) share_irradiance(exchange, crease_angle, arriving.again);
 
     Evaluation evaluation;
     evaluation.rays = arriving.rays;

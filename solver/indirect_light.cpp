@@ -12,6 +12,8 @@ namespace patchlight {
 
 namespace {
 
+constexpr int fewest_rays = 32;  // half of them each time
+
 /// Irradiance per patch by everything but the emitters where they are apart: what must have arrived for B − E to leave.
 PatchField<Rgb> indirect_irradiance(const RoughSolution& rough, const EmittedLight& emitted,
                                     const GatherOptions& options, const WorkMonitor& monitor)
@@ -46,11 +48,6 @@ VertexField<Rgb> around_vertices(const PatchMesh& mesh, const PatchField<Rgb>& v
     for (const VertexId v : mesh.vertices())
         if (area[v] > 0) sum[v] /= area[v];
     return sum;
-}
-
-PatchMesh copy_of(const Scene& scene, const PatchMesh& mesh)
-{
-    return PatchMesh(scene, mesh.arrays());
 }
 
 /// The same with other directions.
@@ -197,7 +194,7 @@ int rays_for(double goal, const LightCarrier& carrier, const QuadraticRadiosity&
         noise_of(carrier.exchange().scene, probes.points, std::vector<double>(probes.points.size(), probes.area),
                  gathered.at(probes.points, leaving, monitor));
     traced += gathered.rays();
-    return static_cast<int>(std::clamp(pilot_rays * std::pow(noise / goal, 4.0 / 3), 32.0, 65536.0));
+    return static_cast<int>(std::clamp(pilot_rays * std::pow(noise / goal, 4.0 / 3), double{fewest_rays}, 65536.0));
 }
 
 /// A third of the area of the patches around each vertex that reflect.
@@ -210,6 +207,8 @@ std::vector<double> vertex_areas(const Scene& scene, const PatchMesh& mesh)
     return areas;
 }
 
+using SharedMesh = std::shared_ptr<const PatchMesh>;
+
 /// A mesh to begin with: few patches, and the contact lines.
 PatchMesh coarse_mesh(const Scene& scene, std::size_t elements)
 {
@@ -221,12 +220,12 @@ PatchMesh coarse_mesh(const Scene& scene, std::size_t elements)
 }
 
 /// Light on quadratic elements: values at nodes, vertices first.
-IndirectLight light_on(PatchMesh mesh, const ElementPoints& nodes, std::span<const Rgb> values)
+IndirectLight light_on(SharedMesh mesh, const ElementPoints& nodes, std::span<const Rgb> values)
 {
-    VertexField<Rgb> corners(mesh.vertex_count());
-    MidpointRadiosity middles(mesh.patch_count());
-    for (const VertexId v : mesh.vertices()) corners[v] = values[v.value];
-    for (const PatchId p : mesh.patches())
+    VertexField<Rgb> corners(mesh->vertex_count());
+    MidpointRadiosity middles(mesh->patch_count());
+    for (const VertexId v : mesh->vertices()) corners[v] = values[v.value];
+    for (const PatchId p : mesh->patches())
         for (std::size_t k = 0; k < 3; ++k) middles[p][k] = values[nodes.midpoint_of[p.value][k]];
     return IndirectLight(std::move(mesh), std::move(corners), std::move(middles));
 }
@@ -240,11 +239,11 @@ std::vector<Rgb> mean_of_both(const GatheredLight& light)
 
 /// √∫|ρ ΔH|² dA by which the elements miss the light at points between their nodes. Both gatherings have their own
 /// elements and their own error, whose product is free of what the rays miss, in the mean.
-double interpolation_error(const Scene& scene, const PatchMesh& mesh, const ElementPoints& nodes,
+double interpolation_error(const Scene& scene, const SharedMesh& mesh, const ElementPoints& nodes,
                            const GatheredLight& at_nodes, const Probes& probes, const GatheredLight& at_probes)
 {
-    const IndirectLight one = light_on(copy_of(scene, mesh), nodes, at_nodes.irradiance);
-    const IndirectLight other = light_on(copy_of(scene, mesh), nodes, at_nodes.again);
+    const IndirectLight one = light_on(mesh, nodes, at_nodes.irradiance);
+    const IndirectLight other = light_on(mesh, nodes, at_nodes.again);
     double sum = 0;
     for (std::size_t i = 0; i < probes.points.size(); ++i) {
         const SurfacePoint& point = probes.points[i];
@@ -266,23 +265,19 @@ Radiosity at_middles(const Scene& scene, const PatchMesh& mesh, const LightCarri
     return B;
 }
 
-/// A mesh, and the light on it.
-struct LitMesh {
-    PatchMesh mesh;
-    IndirectLight light;
-};
-
 /// Halves edges until linear elements miss less than `enough`, or half the budget is used. `light` is what there is to
 /// begin with.
-LitMesh refined_for(const RoughSolution& rough, const LightCarrier& carrier, Gathered& gathered, IndirectLight light,
-                    double enough, const IndirectOptions& options, const WorkMonitor& monitor)
+IndirectLight refined_for(const RoughSolution& rough, const LightCarrier& carrier, Gathered& gathered,
+                          IndirectLight light, double enough, const IndirectOptions& options,
+                          const WorkMonitor& monitor)
 {
     const Exchange& start = rough.exchange;
     const Scene& scene = start.scene;
     const MeshingOptions budget{.max_elements = options.max_elements / 2};
-    PatchMesh mesh = coarse_mesh(scene, options.max_elements);
+    auto shared = std::make_shared<const PatchMesh>(coarse_mesh(scene, options.max_elements));
     QuadraticRadiosity leaving = carrier.leaving(light);
     for (int cycle = 0;; ++cycle) {
+        const PatchMesh& mesh = *shared;
         const PatchLocator locator(mesh);
         const Exchange exchange{scene, start.caster, mesh, locator, start.direct};
         GatheredLight found;
@@ -290,44 +285,45 @@ LitMesh refined_for(const RoughSolution& rough, const LightCarrier& carrier, Gat
             return found = gathered.at(points, leaving, m);
         };
         const ErrorEstimate error = evaluate(exchange, at_nodes, Indicator::middles, 0, 0, monitor).error;
-        light = light_on(copy_of(scene, mesh), element_points(exchange), mean_of_both(found));
+        light = light_on(shared, element_points(exchange), mean_of_both(found));
         leaving = carrier.leaving(light);
         const ErrorEstimate counted =
             rough.weights ? weighted(error, weights_on(scene, mesh, start.locator, *rough.weights)) : error;
         const RefinementPlan plan = mark(scene, mesh, at_middles(scene, mesh, carrier, leaving), counted, options.mark);
         const bool full = 20 * mesh.patch_count() >= 19 * budget.max_elements;
-        if (plan.empty() || full || error.total < enough || cycle == 60) return {std::move(mesh), std::move(light)};
-        mesh = refined(scene, mesh, plan, budget);
+        if (plan.empty() || full || error.total < enough || cycle == 60) return light;
+        shared = std::make_shared<const PatchMesh>(refined(scene, mesh, plan, budget));
     }
 }
 
 /// Two sweeps over the kept hits, a bounce each, or one where not all are kept; and what is left of errors after them.
-IndirectLight swept(const Exchange& start, const LightCarrier& carrier, Gathered& gathered, LitMesh lit,
+IndirectLight swept(const Exchange& start, const LightCarrier& carrier, Gathered& gathered, IndirectLight light,
                     const Probes& probes, const WorkMonitor& monitor)
 {
     const Scene& scene = start.scene;
-    const PatchMesh& mesh = lit.mesh;
-    const PatchLocator locator(mesh);
-    const ElementPoints nodes = element_points({scene, start.caster, mesh, locator, start.direct});
+    const SharedMesh mesh = light.mesh();
+    const PatchLocator locator(*mesh);
+    const ElementPoints nodes = element_points({scene, start.caster, *mesh, locator, start.direct});
     QuadraticRadiosity leaving;
     GatheredLight found;
     // What isn't kept would be traced again each time.
     const int sweeps = gathered.keeps_all() ? 2 : 1;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        leaving = carrier.leaving(lit.light);
+        leaving = carrier.leaving(light);
         found = gathered.anew(nodes.points, leaving, monitor);
-        lit.light = light_on(copy_of(scene, mesh), nodes, mean_of_both(found));
+        light = light_on(mesh, nodes, mean_of_both(found));
     }
-    lit.light.noise = noise_of(scene, nodes.points, vertex_areas(scene, mesh), found);
-    lit.light.mesh_error =
+    light.noise = noise_of(scene, nodes.points, vertex_areas(scene, *mesh), found);
+    light.mesh_error =
         interpolation_error(scene, mesh, nodes, found, probes, gathered.anew(probes.points, leaving, monitor));
-    return std::move(lit.light);
+    return light;
 }
 
 }  // namespace
 
-IndirectLight::IndirectLight(PatchMesh mesh, VertexField<Rgb> at_vertices, MidpointRadiosity at_middles)
-    : mesh_(std::make_unique<const PatchMesh>(std::move(mesh))), locator_(std::make_unique<const PatchLocator>(*mesh_)),
+IndirectLight::IndirectLight(std::shared_ptr<const PatchMesh> mesh, VertexField<Rgb> at_vertices,
+                             MidpointRadiosity at_middles)
+    : mesh_(std::move(mesh)), locator_(std::make_unique<const PatchLocator>(*mesh_)),
       at_vertices_(std::move(at_vertices)), at_middles_(std::move(at_middles))
 {}
 
@@ -347,7 +343,7 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
 {
     const Exchange& start = rough.exchange;
     const Scene& scene = start.scene;
-    IndirectLight light(copy_of(scene, start.mesh),
+    IndirectLight light(std::make_shared<const PatchMesh>(scene, start.mesh.arrays()),
                         around_vertices(start.mesh, indirect_irradiance(rough, emitted, options.gather, monitor)));
     const LightCarrier carrier(start, emitted, light,
                                {options.target_error / 2, options.max_elements / 2, options.gather, options.mark},
@@ -358,8 +354,8 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
     const double goal = 0.4 * target * carrier.norm(leaving);
     const Probes probes = spread_probes(scene, start.mesh, 512, options.gather.seed);
     std::size_t rays = 0;
-    int vertex_rays = options.rays;
-    if (vertex_rays == 0 && goal > 0) vertex_rays = rays_for(goal, carrier, leaving, probes, options, rays, monitor);
+    int vertex_rays = std::max(options.rays, fewest_rays);
+    if (options.rays == 0 && goal > 0) vertex_rays = rays_for(goal, carrier, leaving, probes, options, rays, monitor);
     // Few rays miss what is small and bright, and don't know it.
     if (options.rays == 0 && options.target_error == 0) vertex_rays = std::max(vertex_rays, 512);
 
@@ -367,8 +363,8 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
                       {.rays = vertex_rays / 2, .directions = options.directions, .seed = options.gather.seed});
     // What quadratic elements miss is a third of what linear ones do, or less.
     const double enough = (options.target_error > 0 ? 3 : 2) * goal;
-    LitMesh lit = refined_for(rough, carrier, gathered, std::move(light), enough, options, monitor);
-    light = swept(start, carrier, gathered, std::move(lit), probes, monitor);
+    light = refined_for(rough, carrier, gathered, std::move(light), enough, options, monitor);
+    light = swept(start, carrier, gathered, std::move(light), probes, monitor);
     light.rays = rays + gathered.rays();
     light.vertex_rays = vertex_rays;
     return light;

@@ -14,12 +14,13 @@ namespace patchlight {
 class IndirectLight {
 public:
     /// Without values at the middles of edges: linear.
-    IndirectLight(PatchMesh mesh, VertexField<Rgb> at_vertices, MidpointRadiosity at_middles = {});
+    IndirectLight(std::shared_ptr<const PatchMesh> mesh, VertexField<Rgb> at_vertices,
+                  MidpointRadiosity at_middles = {});
 
     /// W/m² at a point; 0 on a surface without patches.
     Rgb at(const Scene& scene, const SurfacePoint& point) const;
 
-    const PatchMesh& mesh() const { return *mesh_; }
+    const std::shared_ptr<const PatchMesh>& mesh() const { return mesh_; }
 
     double mesh_error = 0;  ///< √∫|ρ ΔH|² dA that its mesh leaves, W/m²·m
     double noise = 0;       ///< and that its rays leave
@@ -30,7 +31,7 @@ public:
 
 private:
     // Where they are, they stay: the locator refers to the mesh.
-    std::unique_ptr<const PatchMesh> mesh_;
+    std::shared_ptr<const PatchMesh> mesh_;
     std::unique_ptr<const PatchLocator> locator_;
     VertexField<Rgb> at_vertices_;
     MidpointRadiosity at_middles_;
@@ -39,7 +40,7 @@ private:
 struct IndirectOptions {
     double target_error = 0;          ///< of the whole solution, relative; 0: as good as the budget's mesh
     std::size_t max_elements = 8000;  ///< of the whole solution's mesh: half of them for this one
-    int rays = 0;                     ///< at each node, 16 … 65536; 0: as many as the error asks for
+    int rays = 0;                     ///< at each node, 32 … 65536; 0: as many as the error asks for
     HemisphereDirections directions = HemisphereDirections::stratified;
     GatherOptions gather;  ///< seed, and shadow rays where direct light is sampled
     MarkOptions mark;

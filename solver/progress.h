@@ -10,7 +10,7 @@ namespace patchlight {
 
 /// Where a long computation stands.
 struct Progress {
-    std::string_view stage;  ///< direct, lines, assemble, solve, indirect, estimate, gather, mesh
+    std::string_view stage;  ///< direct, lines, assemble, solve, importance, indirect, estimate, gather, mesh
     int cycle = 0;           ///< -1 = there are none
     double fraction = 0;     ///< of this stage, 0 … 1
     std::size_t elements = 0;

@@ -34,10 +34,9 @@ Radiosity emittance(const Scene& scene, const PatchMesh& mesh)
 
 std::optional<DirectLight> emitters_light(const Scene& scene, const WorkMonitor& monitor)
 {
-    constexpr std::size_t most_emitters = 500;
     constexpr double most_work = 3e10;  // pairs of a surface and an emitter, times surfaces that may hide it
     const std::vector<SurfaceId> sources = emitters(scene);
-    if (sources.size() > most_emitters) return {};
+    if (sources.size() > RowSampler::most_sources) return {};
     const auto surfaces = static_cast<double>(scene.surfaces.size());
     if (surfaces * surfaces * static_cast<double>(sources.size()) > most_work) return {};
     return std::optional<DirectLight>(std::in_place, scene, sources, monitor);

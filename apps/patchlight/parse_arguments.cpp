@@ -171,6 +171,9 @@ void finish_solve(SolveCommand& c, const Texts& t)
     if (o.final.solver == Solver::hierarchical && t.tolerance_option->count() == 0) o.final.tolerance = 0.05;
     o.final.order = mode_of(order_names(), t.order);
     o.form_factors.method = mode_of(form_factor_names(), t.method);
+    if (o.gather.rays > 0 && o.gather.rays < 16) {
+        throw UsageError("usage", fmt::format("--vertex-rays: {} is neither 0 nor 16 or more", o.gather.rays));
+    }
     if (o.form_factors.resolution % 2 != 0) {
         throw UsageError("usage", fmt::format("--resolution: {} is odd", o.form_factors.resolution));
     }
