@@ -42,8 +42,8 @@ struct IndirectOptions {
     std::size_t max_elements = 8000;  ///< of the whole solution's mesh: half of them for this one
     int rays = 0;                     ///< at each node, 32 … 65536; 0: as many as the error asks for
     HemisphereDirections directions = HemisphereDirections::stratified;
-    GatherOptions gather;  ///< seed, and shadow rays where direct light is sampled
-    MarkOptions mark;
+    GatherOptions gather{};  ///< seed, and shadow rays where direct light is sampled
+    MarkOptions mark{};
 };
 
 /// What the patches of a coarse mesh know: a solution of the whole system, per patch.
