@@ -16,17 +16,23 @@ namespace patchlight {
 struct MeanKernel {
     double mean = 0;
     double spread_p = 0, spread_q = 0;
+    double open = 0.5;  ///< the share of rays that can be expected to get through, never quite 0 or 1 by rays alone
     std::uint32_t rays = 0;
     bool best = false;  ///< more rays are of no use
 };
 
 /// Estimates the exchange of light between nodes of a PatchHierarchy by rays between few points on both, without bias,
 /// of single patches by the closed form times the visible share. What a shaft finds visible or hidden needs no rays.
-/// Rays that all agree aren't trusted more than their number allows, so that slits aren't lost. Deterministic: keyed by
+/// Rays that all agree aren't trusted more than their number allows, so that slits aren't lost; `expected` is the share
+/// of rays that got through between the nodes' parents, 1/2 where nothing is known: what is found hidden again and
+/// again on the way down is at last believed. Deterministic: keyed by
 /// the seed and the nodes. Keeps references. All queries may be made from many threads at once.
 class NodeExchange {
     struct Point {
         Vec3 place{0.0}, normal{0.0};
+    };
+    struct Triangle {
+        Vec3 origin{0.0}, u{0.0}, v{0.0}, normal{0.0};
     };
 
 public:
@@ -50,12 +56,13 @@ public:
     bool may_face(std::uint32_t p, std::uint32_t q) const;
     /// By m² rays from m points to m, m ≥ 2: what mean and spreads are worth grows with m.
     /// Each `draw` has other points.
-    MeanKernel between_points(std::uint32_t p, std::uint32_t q, std::uint32_t m, std::uint32_t draw,
+    MeanKernel between_points(std::uint32_t p, std::uint32_t q, std::uint32_t m, std::uint32_t draw, double expected,
                               Scratch& scratch) const;
     /// Of two single patches: the unoccluded kernel exactly, its visible share by rays weighed by the kernel until the
     /// chance error is below `spread`; when 64 rays don't do and few blockers are near, by partial_exchange, else by at
     /// most 1,024 rays.
-    MeanKernel between_patches(std::uint32_t p, std::uint32_t q, double spread, Scratch& scratch) const;
+    MeanKernel between_patches(std::uint32_t p, std::uint32_t q, double spread, double expected,
+                               Scratch& scratch) const;
 
 private:
     struct Share;
@@ -71,6 +78,7 @@ private:
     const PatchMesh& mesh_;
     const PatchHierarchy& tree_;
     Blockers blockers_;
+    std::vector<Triangle> triangles_;  ///< of the tree's patches, in its order
     std::uint64_t seed_;
 };
 

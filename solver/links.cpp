@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -13,9 +14,10 @@ namespace {
 
 /// Of the errors that different links bring to one node: what they miss, a corner's darkness say, is partly the same.
 /// Measured against dense answers: 0 says too little by up to 4, 1 too much by up to 6.
-constexpr double correlation = 0.25;
+constexpr double correlation = 0.1;
 
-using Pair = std::pair<std::uint32_t, std::uint32_t>;
+/// To keep threads busy.
+constexpr std::size_t enough_pairs = 2048;
 
 /// The upper half of a float, rounded up: three digits.
 std::uint16_t packed(double x)
@@ -68,11 +70,12 @@ double LinkOperator::weight_of(std::uint32_t node, const NodeLight& light) const
     return tree_.nodes[node].area * square(static_cast<double>(light.rho[node]));
 }
 
-LinkOperator::Judged LinkOperator::judge(std::uint32_t p, std::uint32_t q, const NodeLight& light, double most,
+LinkOperator::Judged LinkOperator::judge(const Pair& pair, const NodeLight& light, double most,
                                          NodeExchange::Scratch& scratch) const
 {
     using enum Judged::Verdict;
-    Judged judged{{p, q, 0, 0, 0}, 0, nothing};
+    const auto [p, q, expected] = pair;
+    Judged judged{{p, q, 0, 0, 0, packed(expected)}, 0, nothing};
     const PatchHierarchy::Node &a = tree_.nodes[p], &b = tree_.nodes[q];
     if (p == q) {
         judged.verdict = a.surface.valid() ? nothing : divided;
@@ -87,58 +90,79 @@ LinkOperator::Judged LinkOperator::judge(std::uint32_t p, std::uint32_t q, const
     const double at_most = error_of(link, light);
     const auto take = [&](const MeanKernel& kernel) {
         link.kernel = static_cast<float>(std::min(kernel.mean, greatest));
+        link.open = packed(kernel.open);
         judged.rays += kernel.rays;
         return kernel;
     };
     if (at_most <= most) {
-        take(exchange_.between_points(p, q, 2, 0, scratch));
+        take(exchange_.between_points(p, q, 2, 0, expected, scratch));
     } else if (patches) {
-        const MeanKernel kernel = take(exchange_.between_patches(p, q, greatest * std::sqrt(most / at_most), scratch));
+        const double spread = greatest * std::sqrt(most / at_most);
+        const MeanKernel kernel = take(exchange_.between_patches(p, q, spread, expected, scratch));
         link.spread_p = packed(kernel.spread_p);
         link.spread_q = kernel.best ? 1 : 0;
     } else {
         judged.verdict = divided;
         if (greatest * std::max(a.area, b.area) >= 1) return judged;  // they touch, or nearly
-        const MeanKernel kernel = take(exchange_.between_points(p, q, 4, 0, scratch));
+        const MeanKernel kernel = take(exchange_.between_points(p, q, 4, 0, expected, scratch));
         link.spread_p = packed(std::min(kernel.spread_p, greatest));
         link.spread_q = packed(std::min(kernel.spread_q, greatest));
         if (error_of(link, light) > most) return judged;
         // Afresh: points that chance to agree are taken too often, and on the average with too little light.
-        take(exchange_.between_points(p, q, 4, 1, scratch));
+        take(exchange_.between_points(p, q, 4, 1, expected, scratch));
     }
     const bool certainly_none = link.kernel == 0 && link.spread_p == 0 && (patches || link.spread_q == 0);
     judged.verdict = certainly_none ? nothing : linked;
     return judged;
 }
 
-void LinkOperator::split(std::uint32_t p, std::uint32_t q, std::vector<Pair>& pairs) const
+void LinkOperator::split(const Link& link, std::vector<Pair>& pairs) const
 {
+    const std::uint32_t p = link.p, q = link.q;
+    const double open = unpacked(link.open);
     const auto children = [&](std::uint32_t node) {
-        return Pair{static_cast<std::uint32_t>(tree_.nodes[node].left),
-                    static_cast<std::uint32_t>(tree_.nodes[node].right)};
+        return std::pair(static_cast<std::uint32_t>(tree_.nodes[node].left),
+                         static_cast<std::uint32_t>(tree_.nodes[node].right));
     };
     if (p == q) {
         const auto [left, right] = children(p);
-        for (const Pair& pair : {Pair{left, left}, Pair{left, right}, Pair{right, right}}) pairs.push_back(pair);
+        for (const Pair& pair : {Pair{left, left, open}, Pair{left, right, open}, Pair{right, right, open}})
+            pairs.push_back(pair);
         return;
     }
     const PatchHierarchy::Node &a = tree_.nodes[p], &b = tree_.nodes[q];
     if (b.is_leaf() || (!a.is_leaf() && a.diameter() >= b.diameter())) {
         const auto [left, right] = children(p);
-        pairs.emplace_back(left, q);
-        pairs.emplace_back(right, q);
+        pairs.push_back({left, q, open});
+        pairs.push_back({right, q, open});
     } else {
         const auto [left, right] = children(q);
-        pairs.emplace_back(p, left);
-        pairs.emplace_back(p, right);
+        pairs.push_back({p, left, open});
+        pairs.push_back({p, right, open});
     }
+}
+
+LinkOperator::Branch LinkOperator::refine_all(std::span<const Pair> pairs, const NodeLight& light, double most,
+                                              NodeExchange::Scratch& scratch) const
+{
+    Branch branch;
+    std::vector<Pair> left(pairs.rbegin(), pairs.rend());
+    while (!left.empty()) {
+        const Pair pair = left.back();
+        left.pop_back();
+        const Judged j = judge(pair, light, most, scratch);
+        branch.rays += j.rays;
+        if (j.verdict == Judged::Verdict::linked) branch.links.push_back(j.link);
+        if (j.verdict == Judged::Verdict::divided) split(j.link, left);
+    }
+    return branch;
 }
 
 LinkingReport LinkOperator::refine(const NodeLight& light, double most, const WorkMonitor& monitor)
 {
     LinkingReport report;
     std::vector<Pair> work, next;
-    if (!started_ && !tree_.nodes.empty()) work.emplace_back(tree_.root(), tree_.root());
+    if (!started_ && !tree_.nodes.empty()) work.push_back({tree_.root(), tree_.root()});
     started_ = true;
     std::size_t kept = 0;
     for (const Link& link : links_) {
@@ -150,29 +174,40 @@ LinkingReport LinkOperator::refine(const NodeLight& light, double most, const Wo
         }
         ++report.refined;
         if (patches)
-            work.emplace_back(link.p, link.q);
+            work.push_back({link.p, link.q, unpacked(link.open)});
         else
-            split(link.p, link.q, work);
+            split(link, work);
     }
     links_.resize(kept);
-    std::vector<Judged> judged;
-    while (!work.empty()) {
-        judged.assign(work.size(), {});
-        for_each_row<NodeExchange::Scratch>(
-            work.size(), {monitor.stop, {}},
-            [&](std::size_t i, NodeExchange::Scratch& scratch) {
-                judged[i] = judge(work[i].first, work[i].second, light, most, scratch);
-            },
-            64);
+    NodeExchange::Scratch scratch;
+    while (!work.empty() && work.size() < enough_pairs) {
         next.clear();
-        for (const Judged& j : judged) {
+        for (const Pair& pair : work) {
+            const Judged j = judge(pair, light, most, scratch);
             report.rays += j.rays;
             if (j.verdict == Judged::Verdict::linked) links_.push_back(j.link);
-            if (j.verdict == Judged::Verdict::divided) split(j.link.p, j.link.q, next);
+            if (j.verdict == Judged::Verdict::divided) split(j.link, next);
         }
         work.swap(next);
-        if (monitor.tell) monitor.tell({.rays = report.rays});
     }
+    // From here on each pair with all that it is divided into at once: what is near one another in space stays near in
+    // memory, and in the rays' caches.
+    const std::size_t group = std::clamp<std::size_t>(work.size() / enough_pairs, 1, 64);
+    std::vector<Branch> branches((work.size() + group - 1) / group);
+    WorkMonitor dividing{monitor.stop, {}};
+    std::atomic<std::size_t> rays{report.rays};
+    if (monitor.tell) dividing.tell = [&](const WorkState&) { monitor.tell({.rays = rays}); };
+    for_each_row<NodeExchange::Scratch>(
+        branches.size(), dividing,
+        [&](std::size_t i, NodeExchange::Scratch& own) {
+            const std::size_t first = i * group;
+            branches[i] =
+                refine_all(std::span(work).subspan(first, std::min(group, work.size() - first)), light, most, own);
+            rays += branches[i].rays;
+        },
+        1);
+    for (const Branch& branch : branches) links_.insert(links_.end(), branch.links.begin(), branch.links.end());
+    report.rays = rays;
     report.links = static_cast<std::size_t>(std::ranges::count_if(links_, [](const Link& l) { return l.kernel > 0; }));
     return report;
 }

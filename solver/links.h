@@ -16,6 +16,7 @@ struct Link {
     std::uint32_t p = 0, q = 0;
     float kernel = 0;                          ///< MeanKernel::mean, 1/m²
     std::uint16_t spread_p = 0, spread_q = 0;  ///< floats' upper halves; between two patches spread_q = 1: final
+    std::uint16_t open = 0;                    ///< MeanKernel::open, the same
 };
 
 /// What nodes send out and how they answer, three bands.
@@ -63,20 +64,30 @@ public:
 
 private:
     struct Judged;
+    struct Pair {
+        std::uint32_t p = 0, q = 0;
+        double expected = 0.5;  ///< share of rays
+    };
     struct Entry {
         std::uint32_t other = 0;
         float kernel = 0;
     };
 
-    Judged judge(std::uint32_t p, std::uint32_t q, const NodeLight& light, double most,
-                 NodeExchange::Scratch& scratch) const;
+    Judged judge(const Pair& pair, const NodeLight& light, double most, NodeExchange::Scratch& scratch) const;
     struct Wrong {
         double at_p = 0, at_q = 0;
     };
     Wrong wrong_at(const Link& link, const NodeLight& light) const;
     double error_of(const Link& link, const NodeLight& light) const;
     double weight_of(std::uint32_t node, const NodeLight& light) const;
-    void split(std::uint32_t p, std::uint32_t q, std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
+    struct Branch {
+        std::vector<Link> links;
+        std::size_t rays = 0;
+    };
+    /// Those pairs and all that they are divided into, in order.
+    Branch refine_all(std::span<const Pair> pairs, const NodeLight& light, double most,
+                      NodeExchange::Scratch& scratch) const;
+    void split(const Link& link, std::vector<Pair>& pairs) const;
 
     const PatchHierarchy& tree_;
     const NodeExchange& exchange_;

@@ -1,36 +1,13 @@
 #include "solver/lost_light.h"
 
-#include "formfactor/random_numbers.h"
 #include "formfactor/work_monitor.h"
 #include "meshing/union_find.h"
+#include "solver/random_ray.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <vector>
 
 namespace patchlight {
-
-namespace {
-
-/// A ray from a random place of a patch.
-void set_ray(const Exchange& exchange, PatchId patch, RandomNumbers& random, std::size_t i, RayBatch& batch)
-{
-    const PatchMesh& mesh = exchange.mesh;
-    const PlaneFrame& frame = exchange.scene.surface(mesh.surface(patch)).frame;
-    const auto c = mesh.corners(patch);
-    const double root = std::sqrt(random.uniform()), split = random.uniform();
-    const Vec3& origin = mesh.position(c[0]);
-    const Vec3 place =
-        origin + root * (1 - split) * (mesh.position(c[1]) - origin) + root * split * (mesh.position(c[2]) - origin);
-    const double r2 = random.uniform(), phi = 2 * std::numbers::pi * random.uniform();
-    const Vec3 direction =
-        std::sqrt(r2) * (std::cos(phi) * frame.u + std::sin(phi) * frame.v) + std::sqrt(1 - r2) * frame.n;
-    batch.set(i, exchange.caster.leave(place, frame.n), direction, std::numeric_limits<float>::infinity());
-}
-
-}  // namespace
 
 LostLight lost_light(const Exchange& exchange, const Radiosity& B, std::size_t rays, std::uint64_t seed)
 {
@@ -47,7 +24,7 @@ LostLight lost_light(const Exchange& exchange, const Radiosity& B, std::size_t r
     for (std::size_t i = 0; i < rays; ++i) {
         const double target = power * (static_cast<double>(i) + random.uniform()) / static_cast<double>(rays);
         while (patch + 1 < B.size() && power_upto[patch + 1] <= target) ++patch;
-        set_ray(exchange, PatchId(patch), random, i, batch);
+        set_random_ray(exchange, PatchId(patch), random, i, batch);
     }
     HitBatch hits;
     exchange.caster.closest(batch, hits);
@@ -73,7 +50,7 @@ std::vector<std::uint8_t> lit_surfaces(const Exchange& exchange, std::uint64_t s
         RandomNumbers random(seed, s);
         scratch.batch.resize(rays);
         for (std::size_t i = 0; i < rays; ++i)
-            set_ray(exchange, PatchId(patches.first + i * patches.size() / rays), random, i, scratch.batch);
+            set_random_ray(exchange, PatchId(patches.first + i * patches.size() / rays), random, i, scratch.batch);
         exchange.caster.closest(scratch.batch, scratch.hits);
         std::ranges::copy(scratch.hits.surface, met.begin() + static_cast<std::ptrdiff_t>(s * rays));
     });

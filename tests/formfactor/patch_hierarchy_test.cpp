@@ -137,9 +137,9 @@ TEST(NodeExchange, FindsTheLightThroughASlit)
             const PatchHierarchy::Node &a = tree.nodes[p], &b = tree.nodes[q];
             if (!a.is_leaf() || !b.is_leaf() || a.surface.value != 0 || b.surface.value != 1) continue;
             ASSERT_TRUE(exchange.may_face(p, q));
-            const MeanKernel coarse = exchange.between_points(p, q, 4, 0, scratch);
+            const MeanKernel coarse = exchange.between_points(p, q, 4, 0, 0.5, scratch);
             EXPECT_GT(std::max(coarse.spread_p, coarse.mean), 0);  // rays that all miss prove nothing
-            sum += a.area * b.area * exchange.between_patches(p, q, 0, scratch).mean;
+            sum += a.area * b.area * exchange.between_patches(p, q, 0, 0.5, scratch).mean;
         }
     // To first order in the width w: (w/π) ∫ over the slit ∫∫ da db / (1 + a² + b²)² over the slopes (a, b) of lines
     // that meet both squares. Clipping errs by 2e-5 of the factor allowed to a pair, 1 % of this one.

@@ -4,6 +4,7 @@
 #include "formfactor/form_factor_matrix.h"
 #include "formfactor/random_numbers.h"
 #include "meshing/read_scene.h"
+#include "solver/light_operator.h"
 #include "tests/formfactor/boxes.h"
 #include "tests/formfactor/random_scenes.h"
 
@@ -264,6 +265,27 @@ TEST(Hierarchical, StopRequestsAreObeyed)
                             if (++told == 3) stop.request_stop();
                         }};
     EXPECT_THROW(linked(room, 1e-3, monitor), Interrupted);
+}
+
+// Light that really arrives is found right, and a fifth too much by its size and sign, within four standard errors.
+TEST(Hierarchical, ChecksMeasureWhatIsWrong)
+{
+    const Room room(read("cornell-box.obj", 1e-3), 600, false);
+    FormFactorOptions options;
+    options.method = FormFactorMethod::exact;
+    const FormFactorMatrix F = form_factor_matrix(room.scene, room.caster, room.mesh, room.locator, options, {});
+    const RadiositySystem system = unassembled(room.exchange());
+    RandomNumbers random(3, 1);
+    Radiosity X = system.E, H = X;
+    for (const PatchId p : room.mesh.patches()) X[p] = Rgb(0.5 + random.uniform());
+    for (const PatchId p : room.mesh.patches()) H[p] = gathered(F, X, p.value);
+    const LinkCheck right = check_links(room.exchange(), system.rho, X, H, 1'000'000, 1);
+    EXPECT_LT(right.at_least(), 2 * std::sqrt(right.uncertainty));
+    EXPECT_NEAR(right.bias, 0, 0.004);  // a thousandth of noise
+    for (const PatchId p : room.mesh.patches()) H[p] *= 1.2;
+    const LinkCheck wrong = check_links(room.exchange(), system.rho, X, H, 1'000'000, 1);
+    EXPECT_NEAR(wrong.error * wrong.error, 1 / 36.0, 4 * wrong.uncertainty);
+    EXPECT_NEAR(wrong.bias, 1 / 6.0, 0.004);
 }
 
 // Issue 5 allows a thousandth of n² in a scene of 6,000 polygons; this one has half of that. At 10 %.
