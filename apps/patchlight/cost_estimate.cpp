@@ -18,8 +18,8 @@ namespace {
 constexpr double area_per_squared_edge = 0.25;
 // Beside the rows: mesh, fields and their copies.
 constexpr double bytes_per_element = 1500;
-// Of an element, with its share of the tree; about 60 links.
-constexpr double bytes_of_links = 3000;
+// Of an element, with its share of the tree; about 20 links.
+constexpr double bytes_of_links = 1500;
 
 double physical_memory()
 {
