@@ -12,7 +12,7 @@ namespace patchlight {
 namespace {
 
 /// Further from a surface, squared, its light says nothing: it covers a gutter's corners.
-constexpr double reach2 = (lightmap_gutter + 1) * (lightmap_gutter + 1);
+constexpr float reach2 = (lightmap_gutter + 1) * (lightmap_gutter + 1);
 
 Vec2 nearest_on_segment(const Vec2& p, const Vec2& a, const Vec2& b)
 {
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    double& distance2_at(int x, int y)
+    float& distance2_at(int x, int y)
     {
         return distance2_[static_cast<std::size_t>(y - chart_.y) * static_cast<std::size_t>(chart_.width) +
                           static_cast<std::size_t>(x - chart_.x)];
@@ -72,7 +72,7 @@ private:
         for (int y = y0; y < y1; ++y) {
             for (int x = x0; x < x1; ++x) {
                 const Vec2 center(x + 0.5, y + 0.5), nearest = nearest_on_triangle(center, t);
-                const double d2 = glm::dot(nearest - center, nearest - center);
+                const auto d2 = static_cast<float>(glm::dot(nearest - center, nearest - center));
                 if (d2 < distance2_at(x, y)) {
                     distance2_at(x, y) = d2;
                     image.set(x, y, value(solution_.light().at(patch, atlas_.plane_at(surface_, nearest))));
@@ -118,7 +118,7 @@ private:
     SurfaceId surface_;
     const Material& material_;
     LightmapQuantity quantity_;
-    std::vector<double> distance2_;  ///< from a texel's centre to the patch it has its light from, texels²
+    std::vector<float> distance2_;  ///< from a texel's centre to the patch it has its light from, texels²
 };
 
 }  // namespace
