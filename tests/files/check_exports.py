@@ -66,9 +66,11 @@ class Run:
     def __init__(self, command, scene, folder, elements):
         self.command, self.scene, self.folder = command, scene, folder
         self.in_mm = scene.name.startswith("cornell-box") and scene.suffix == ".obj"
-        self.call("solve", scene, "-o", folder / "run", "--unit", "mm" if self.in_mm else "m", "--refine", "none",
-                  "--max-elements", 800, "--rays", 16, "--vertex-rays", 16, "--direct", "sampled", "--shadow-rays", 16,
-                  "--pictures", "none", "--quiet", "--elements", elements)
+        # The smaller ones with meshes that are cut open along contact lines, and with several cycles.
+        refine = ["both", "--iterations", 6] if scene.stat().st_size < 30_000 else ["none", "--direct", "sampled"]
+        self.call("solve", scene, "-o", folder / "run", "--unit", "mm" if self.in_mm else "m", "--refine", *refine,
+                  "--max-elements", 1000, "--rays", 16, "--vertex-rays", 16, "--shadow-rays", 16, "--pictures", "none",
+                  "--quiet", "--elements", elements)
         self.record = json.loads((folder / "run" / "run.json").read_text(encoding="utf-8"))
         self.glb = Glb(folder / "run" / "solution.glb")
         self.vertex_B = triples(self.glb.stored("vertex_radiosity", "d"))
