@@ -1,5 +1,6 @@
 #pragma once
 
+#include "apps/imaging/lightmap.h"
 #include "apps/imaging/picture.h"
 #include "apps/run/run_folder.h"
 #include "formfactor/pair_factor.h"
@@ -79,6 +80,9 @@ struct ExportCommand {
     std::string run;
     std::string format;
     std::string output;
+    WhichCycle cycle;
+    LightmapOptions lightmap;
+    LightmapQuantity quantity = LightmapQuantity::radiosity;
 };
 
 struct FormFactorsCommand {

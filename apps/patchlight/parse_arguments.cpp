@@ -1,6 +1,7 @@
 #include "apps/patchlight/arguments.h"
 
 #include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/export_arguments.h"
 #include "apps/patchlight/form_factor_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/usage_error.h"
@@ -267,6 +268,7 @@ struct Parser {
     RenderCommand render;
     ProbeCommand probe;
     ExportCommand exported;
+    ExportTexts export_texts;
     VerifyCommand verify;
     FormFactorsCommand form_factors;
     ValidateCommand validate;
@@ -288,7 +290,7 @@ struct Parser {
         add_solve();
         add_render(*app.add_subcommand("render", "A picture of a stored run"), render, render_texts);
         add_probe();
-        add_export();
+        add_export(*app.add_subcommand("export", "The solution in other programs' formats"), exported, export_texts);
         add_verify(*app.add_subcommand("verify", "The error of a stored run, measured by path tracing"), verify,
                    verify_cycle);
         add_form_factors(*app.add_subcommand("formfactors", "Form factors between two objects, or of all patches"),
@@ -338,16 +340,6 @@ struct Parser {
             ->capture_default_str();
     }
 
-    void add_export()
-    {
-        auto& c = *app.add_subcommand("export", "The solution in other programs' formats");
-        c.add_option("run", exported.run, "folder of a run")->required()->type_name("RUN");
-        c.add_option("--format", exported.format, "of the file")
-            ->required()
-            ->check(CLI::IsMember({"glb", "ply", "csv"}));
-        c.add_option("-o", exported.output, "file to write")->required()->type_name("FILE");
-    }
-
     /// CLI11 would only say that a command is missing.
     static void check_command(int argc, const char* const* argv)
     {
@@ -379,6 +371,7 @@ struct Parser {
             return probe;
         }
         if (app.got_subcommand("export")) {
+            finish_export(exported, export_texts);
             return exported;
         }
         if (app.got_subcommand("verify")) {

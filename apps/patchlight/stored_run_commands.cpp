@@ -5,7 +5,6 @@
 #include "apps/patchlight/run_pictures.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/view_choice.h"
-#include "apps/run/exporting.h"
 #include "apps/run/probing.h"
 
 #include <fmt/format.h>
@@ -106,19 +105,6 @@ int run_command(const ProbeCommand& command, Session& session)
     } else {
         session.writer.write(folder_first(command.output), csv);
     }
-    return 0;
-}
-
-int run_command(const ExportCommand& command, Session& session)
-{
-    const StoredSolution stored = solution_of(open_run(command.run), {});
-    session.interruption.check();
-    const std::string bytes = command.format == "ply" ? encode_ply(stored)
-                              : command.format == "csv"
-                                  ? encode_csv(stored)
-                                  : encode_solution(stored.scene, stored.mesh, stored.B, stored.vertex_B, stored.eta,
-                                                    stored.edge, stored.middle_B);
-    session.writer.write(folder_first(command.output), bytes);
     return 0;
 }
 

@@ -1,12 +1,16 @@
 #include "apps/run/exporting.h"
 
+#include "apps/run/element_nodes.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -42,6 +46,17 @@ std::string ply_header(std::size_t vertices, std::size_t faces)
                        "property list uchar uint vertex_indices\nproperty uint surface\n"
                        "end_header\n",
                        vertices, faces);
+}
+
+/// The triangles of a patch, by its nodes.
+std::span<const std::array<std::size_t, 3>> faces_of(std::size_t nodes_per_patch)
+{
+    static constexpr std::array<std::array<std::size_t, 3>, 1> linear{{{0, 1, 2}}};
+    static constexpr std::array<std::array<std::size_t, 3>, 4> quadratic{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+    if (nodes_per_patch == 3) {
+        return linear;
+    }
+    return quadratic;
 }
 
 /// As the scene's file has it.
@@ -88,11 +103,13 @@ double display_scale(const Scene& scene, const PatchMesh& mesh, const VertexRadi
 std::string encode_ply(const StoredSolution& solution)
 {
     const PatchMesh& mesh = solution.mesh;
-    std::string out = ply_header(mesh.vertex_count(), mesh.patch_count());
+    const ElementNodes nodes = element_nodes(solution);
+    const auto faces = faces_of(nodes.per_patch);
+    std::string out = ply_header(nodes.positions.size(), faces.size() * mesh.patch_count());
     const double scale = display_scale(solution.scene, mesh, solution.vertex_B) / std::numbers::pi;
-    for (VertexId v : mesh.vertices()) {
-        const Vec3 p = in_file(solution.scene, mesh.position(v));
-        const Rgb& B = solution.vertex_B[v];
+    for (std::size_t i = 0; i < nodes.positions.size(); ++i) {
+        const Vec3& p = nodes.positions[i];
+        const Rgb& B = nodes.B[i];
         for (int k = 0; k < 3; ++k) {
             append(out, p[k]);
         }
@@ -104,11 +121,14 @@ std::string encode_ply(const StoredSolution& solution)
         }
     }
     for (PatchId patch : mesh.patches()) {
-        append(out, static_cast<unsigned char>(3));
-        for (VertexId corner : mesh.corners(patch)) {
-            append(out, corner.value);
+        const std::uint32_t* node = &nodes.of_patches[patch.value * nodes.per_patch];
+        for (const auto& face : faces) {
+            append(out, static_cast<unsigned char>(3));
+            for (std::size_t corner : face) {
+                append(out, node[corner]);
+            }
+            append(out, mesh.surface(patch).value);
         }
-        append(out, mesh.surface(patch).value);
     }
     return out;
 }

@@ -1,6 +1,8 @@
 #include "apps/run/glb_file.h"
 
 #include "apps/run/exporting.h"
+#include "apps/run/gltf_buffer.h"
+#include "apps/run/gltf_scene.h"
 #include "apps/run/stored_scene.h"
 #include "meshing/scene_error.h"
 
@@ -9,7 +11,6 @@
 #include <algorithm>
 #include <cstring>
 #include <numbers>
-#include <sstream>
 
 namespace patchlight {
 
@@ -17,62 +18,6 @@ namespace {
 
 constexpr std::size_t deepest_json = 64;
 constexpr const char* schema = "patchlight-solution/1";
-
-/// Appends arrays to the one buffer of a model, each as a bufferView.
-class BufferBuilder {
-public:
-    explicit BufferBuilder(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
-
-    int view(const void* data, std::size_t bytes, int target = 0)
-    {
-        std::vector<unsigned char>& all = model_.buffers[0].data;
-        all.resize((all.size() + 7) / 8 * 8);
-        tinygltf::BufferView entry;
-        entry.buffer = 0;
-        entry.byteOffset = all.size();
-        entry.byteLength = bytes;
-        entry.target = target;
-        const auto* first = static_cast<const unsigned char*>(data);
-        all.insert(all.end(), first, first + bytes);
-        model_.bufferViews.push_back(entry);
-        return static_cast<int>(model_.bufferViews.size()) - 1;
-    }
-
-    int floats(const std::vector<float>& values, bool with_bounds)
-    {
-        tinygltf::Accessor entry;
-        entry.bufferView = view(values.data(), values.size() * sizeof(float), TINYGLTF_TARGET_ARRAY_BUFFER);
-        entry.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-        entry.type = TINYGLTF_TYPE_VEC3;
-        entry.count = values.size() / 3;
-        for (std::size_t axis = 0; with_bounds && axis < 3; ++axis) {
-            float low = values[axis], high = values[axis];
-            for (std::size_t i = axis; i < values.size(); i += 3) {
-                low = std::min(low, values[i]);
-                high = std::max(high, values[i]);
-            }
-            entry.minValues.push_back(static_cast<double>(low));
-            entry.maxValues.push_back(static_cast<double>(high));
-        }
-        model_.accessors.push_back(entry);
-        return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-    int indices(const std::vector<std::uint32_t>& values)
-    {
-        tinygltf::Accessor entry;
-        entry.bufferView =
-            view(values.data(), values.size() * sizeof(std::uint32_t), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-        entry.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-        entry.type = TINYGLTF_TYPE_SCALAR;
-        entry.count = values.size();
-        model_.accessors.push_back(entry);
-        return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-private:
-    tinygltf::Model& model_;
-};
 
 std::vector<float> floats_of(std::span<const Vec3> values, double scale, double highest)
 {
@@ -86,31 +31,14 @@ std::vector<float> floats_of(std::span<const Vec3> values, double scale, double 
     return result;
 }
 
-tinygltf::Value value_of(const Rgb& c)
-{
-    return tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(c.r), tinygltf::Value(c.g), tinygltf::Value(c.b)});
-}
-
-/// Unlit: the light is in the colours already.
-tinygltf::Material material_of(const Material& material)
-{
-    tinygltf::Material entry;
-    entry.name = as_utf8(material.name);
-    entry.doubleSided = false;
-    entry.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
-    entry.extras = tinygltf::Value(tinygltf::Value::Object{{"reflectance", value_of(material.reflectance)},
-                                                           {"emission", value_of(material.emission)}});
-    return entry;
-}
-
 void add_geometry(const Scene& scene, const PatchMesh& mesh, const VertexRadiosity& vertex_B, double scale,
-                  tinygltf::Model& model, BufferBuilder& buffer)
+                  tinygltf::Model& model, GltfBuffer& buffer)
 {
     const double unbounded = std::numeric_limits<double>::infinity();
     std::map<std::string, int> attributes;
-    attributes["POSITION"] = buffer.floats(floats_of(mesh.arrays().positions, 1, unbounded), true);
-    attributes["COLOR_0"] = buffer.floats(floats_of(vertex_B.values(), scale / std::numbers::pi, 1), false);
-    attributes["_RADIOSITY"] = buffer.floats(floats_of(vertex_B.values(), 1, unbounded), false);
+    attributes["POSITION"] = buffer.floats(floats_of(mesh.arrays().positions, 1, unbounded), 3, true);
+    attributes["COLOR_0"] = buffer.floats(floats_of(vertex_B.values(), scale / std::numbers::pi, 1), 3, false);
+    attributes["_RADIOSITY"] = buffer.floats(floats_of(vertex_B.values(), 1, unbounded), 3, false);
     std::vector<std::vector<std::uint32_t>> corners(scene.materials.size());
     for (PatchId patch : mesh.patches()) {
         const auto& t = mesh.arrays().triangles[patch.value];
@@ -120,7 +48,7 @@ void add_geometry(const Scene& scene, const PatchMesh& mesh, const VertexRadiosi
     tinygltf::Mesh entry;
     entry.name = "patches";
     for (std::size_t m = 0; m < corners.size(); ++m) {
-        model.materials.push_back(material_of(scene.materials[m]));
+        model.materials.push_back(unlit_material(scene.materials[m]));
         if (corners[m].empty()) {
             continue;
         }
@@ -132,22 +60,6 @@ void add_geometry(const Scene& scene, const PatchMesh& mesh, const VertexRadiosi
         entry.primitives.push_back(primitive);
     }
     model.meshes.push_back(entry);
-}
-
-void add_node(const Scene& scene, tinygltf::Model& model)
-{
-    tinygltf::Node node;
-    node.name = as_utf8(scene.name);
-    node.mesh = 0;
-    node.translation = {scene.center.x, scene.center.y, scene.center.z};
-    model.nodes.push_back(node);
-    tinygltf::Scene entry;
-    entry.nodes = {0};
-    model.scenes.push_back(entry);
-    model.defaultScene = 0;
-    model.extensionsUsed = {"KHR_materials_unlit"};
-    model.asset.version = "2.0";
-    model.asset.generator = "patchlight";
 }
 
 /// tinygltf reads extras recursively: a deep one would end in a stack overflow, so look before it does.
@@ -210,11 +122,11 @@ std::string encode_glb(const Scene& scene, const PatchMesh& mesh, const VertexRa
                        const ByteViews& views)
 {
     tinygltf::Model model;
-    BufferBuilder buffer(model);
+    GltfBuffer buffer(model);
     // COLOR_0 must lie in [0, 1].
     const double scale = display_scale(scene, mesh, vertex_B);
     add_geometry(scene, mesh, vertex_B, scale, model, buffer);
-    add_node(scene, model);
+    add_nodes(scene, model);
     tinygltf::Value::Object names;
     for (const auto& [name, bytes] : views) {
         if (!bytes.empty()) {
@@ -225,12 +137,7 @@ std::string encode_glb(const Scene& scene, const PatchMesh& mesh, const VertexRa
         {"patchlight", tinygltf::Value(tinygltf::Value::Object{{"schema", tinygltf::Value(std::string(schema))},
                                                                {"color_scale", tinygltf::Value(scale)},
                                                                {"views", tinygltf::Value(names)}})}});
-    std::ostringstream out;
-    tinygltf::TinyGLTF writer;
-    if (!writer.WriteGltfSceneToStream(&model, out, false, true)) {
-        throw std::runtime_error("can't encode solution.glb");
-    }
-    return std::move(out).str();
+    return glb_of(model);
 }
 
 ByteViews decode_glb(std::string_view bytes)

@@ -218,6 +218,7 @@ TEST(Architecture, ThirdPartyLibrariesStayInTheirRooms)
     expect_only_in_sources_of(header_in("CGAL/"), "meshing");
     expect_only_in_sources_of(header_in("embree"), "formfactor");
     expect_only_in_sources_of(header_in("OpenImageIO/"), "apps/imaging");
+    expect_only_in_sources_of(header_in("stb/"), "apps/imaging");
     expect_only_in_sources_of(header_in("openssl/"), "apps/run");
     expect_stays_in(header_in("OpenMesh/"), {"meshing"});
     expect_stays_in(header_in("CLI/"), {"apps/patchlight"});

@@ -49,8 +49,7 @@ INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
                                            solving({"--refine", "quadratic"}),
                                            solving({"--form-factors", "monte-carlo"}),
                                            solving({"--form-factors", "closed-form"}), solving({"--overshoot"}),
-                                           solving({"--resolution", "127"}), solving({"--mesh", "a"}),
-                                           std::vector<std::string>{"export", "a", "--format", "vtu", "-o", "b"}));
+                                           solving({"--resolution", "127"}), solving({"--mesh", "a"})));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, RefusedArguments,
@@ -87,6 +86,26 @@ INSTANTIATE_TEST_SUITE_P(Verify, RefusedArguments,
                                            std::vector<std::string>{"verify", "a", "--seed", "-1"},
                                            std::vector<std::string>{"verify", "a", "--threads", "0"},
                                            std::vector<std::string>{"verify", "a", "b"}));
+
+std::vector<std::string> exporting(std::vector<std::string> words)
+{
+    words.insert(words.begin(), {"export", "run"});
+    return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Export, RefusedArguments,
+    ::testing::Values(exporting({}), exporting({"--format", "vtu"}), exporting({"--format", "stl", "-o", "a"}),
+                      exporting({"--format", "pvd", "-o", "a.pvd", "--cycle", "last"}),
+                      exporting({"--format", "vtu", "-o", "a.vtu", "--cycle", "all"}),
+                      exporting({"--format", "vtu", "-o", "a.vtu", "--size", "64"}),
+                      exporting({"--format", "ply", "-o", "a.ply", "--texels-per-metre", "64"}),
+                      exporting({"--format", "csv", "-o", "a.csv", "--quantity", "irradiance"}),
+                      exporting({"--format", "lightmap", "-o", "a.glb"}),
+                      exporting({"--format", "lightmap", "-o", "a.exr", "--size", "15"}),
+                      exporting({"--format", "lightmap", "-o", "a.exr", "--size", "8193"}),
+                      exporting({"--format", "lightmap", "-o", "a.exr", "--texels-per-metre", "0"}),
+                      exporting({"--format", "lightmap", "-o", "a.exr", "--quantity", "B"})));
 
 std::vector<std::string> factors(std::vector<std::string> words)
 {
@@ -221,6 +240,23 @@ TEST(Arguments, VerifyTakesACycleAndHasDefaults)
     EXPECT_EQ(chosen.cycle.number, 3);
     EXPECT_EQ(chosen.seed, 9U);
     EXPECT_TRUE(chosen.json);
+}
+
+TEST(Arguments, ExportHasDefaultsForLightmaps)
+{
+    const auto command = [](std::vector<std::string> words) {
+        return std::get<ExportCommand>(parse(exporting(std::move(words))));
+    };
+    EXPECT_EQ(command({"--format", "vtu", "-o", "a"}).cycle.kind, WhichCycle::Kind::last);
+    EXPECT_EQ(command({"--format", "vtu", "-o", "a", "--cycle", "2"}).cycle.number, 2);
+    EXPECT_EQ(command({"--format", "lightmap", "-o", "a.exr"}).lightmap.size, 1024);
+    const auto dense = command({"--format", "lightmap", "-o", "a.exr", "--texels-per-metre", "50"});
+    EXPECT_EQ(dense.lightmap.size, largest_picture_side);
+    EXPECT_EQ(dense.lightmap.texels_per_metre, 50);
+    const auto both = command({"--format", "lightmap", "-o", "a.exr", "--texels-per-metre", "50", "--size", "512",
+                               "--quantity", "irradiance"});
+    EXPECT_EQ(both.lightmap.size, 512);
+    EXPECT_EQ(both.quantity, LightmapQuantity::irradiance);
 }
 
 TEST(Arguments, ValidateTakesOneMethodOrAll)
