@@ -1,9 +1,22 @@
 import uPlot from 'uplot';
+import { niceAbove } from './colours.js';
 import { significant } from './numbers.js';
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-function options(place, xTitle, names, points) {
+/// 1, 2, 5 times the powers of ten in a range; where that would be less than three, even steps.
+function ticksIn(low, high) {
+  const ticks = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power) {
+    for (const digit of [1, 2, 5]) ticks.push(Number(`${digit}e${power}`));
+  }
+  const inside = ticks.filter((tick) => tick >= low && tick <= high);
+  if (inside.length >= 3) return inside;
+  const step = niceAbove((high - low) / 5), first = Math.ceil(low / step);
+  return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+}
+
+function options(place, xTitle, names) {
   const axis = (label) => ({
     label,
     stroke: colour('--ink'),
@@ -12,7 +25,9 @@ function options(place, xTitle, names, points) {
     labelSize: 22,
     font: '12px system-ui, sans-serif',
     labelFont: '12px system-ui, sans-serif',
-    values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : significant(tick, 3))),
+    splits: (_, axis, low, high) => ticksIn(low, high),
+    filter: (_, ticks) => ticks,
+    values: (_, ticks) => ticks.map((tick) => significant(tick, 3)),
   });
   const series = names.map((label, i) => ({
     label,
@@ -20,7 +35,6 @@ function options(place, xTitle, names, points) {
     width: i === 0 ? 2 : 0,
     spanGaps: true,
     points: { show: true, size: i === 0 ? 6 : 10, fill: colour(`--series-${i + 1}`) },
-    value: (_, value) => (value === null || value === undefined ? '–' : `${significant(value, 3)} %`),
   }));
   const room = (low, high) => (low > 0 && high > low ? [low / 1.15, high * 1.15] : [low / 2 || 0.1, high * 2 || 1]);
   return {
@@ -29,9 +43,9 @@ function options(place, xTitle, names, points) {
     scales: { x: { time: false, distr: 3, range: (_, low, high) => room(low, high) },
               y: { distr: 3, range: (_, low, high) => room(low, high) } },
     axes: [axis(xTitle), { ...axis('estimated error, %'), size: 62 }],
-    series: [{ label: xTitle, value: (_, value) => significant(value, 5) }, ...series],
-    cursor: { drag: { x: false, y: false } },
-    legend: { live: points > 1 },
+    series: [{}, ...series],
+    cursor: { show: false },
+    legend: { live: false },
   };
 }
 
@@ -47,7 +61,7 @@ export function plot(place, xTitle, points) {
   let chart;
   const make = () => {
     chart?.destroy();
-    chart = new uPlot(options(place, xTitle, names, shown.length), columns, place);
+    chart = new uPlot(options(place, xTitle, names), columns, place);
   };
   make();
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', make);

@@ -20,10 +20,10 @@ export function viridisTexture() {
 }
 export const mapSteps = viridis.length;
 
-/// The next 1, 2 or 5 times a power of ten.
-export function niceAbove(value) {
+/// The next of `steps` times a power of ten.
+export function niceAbove(value, steps = [1, 2, 5, 10]) {
   if (!(value > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(value));
-  for (const step of [1, 2, 5, 10]) if (value <= step * power * 1.0000001) return step * power;
+  for (const step of steps) if (value <= step * power * 1.0000001) return step * power;
   return 10 * power;
 }

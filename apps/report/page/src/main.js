@@ -29,10 +29,11 @@ function usualExposure() {
   return bright > 0 ? Math.log2(0.5 / bright) : 0;
 }
 
-/// The map's ranges, the same for all cycles.
+/// The map's ranges, the same for all cycles. A quarter of each is a round number.
+const quarters = [1, 1.2, 1.6, 2, 3, 4, 5, 6, 8, 10];
 const tops = {
-  lux: niceAbove(last.percentile(0.99, (p) => last.patchLux(p))),
-  radiosity: niceAbove(last.percentile(0.99, (p) => last.patchMean(p))),
+  lux: niceAbove(last.percentile(0.98, (p) => last.patchLux(p)), quarters),
+  radiosity: niceAbove(last.percentile(0.98, (p) => last.patchMean(p)), quarters),
   error: niceAbove(Math.max(first.percentile(0.999, (p) => first.eta[p]), last.percentile(0.999, (p) => last.eta[p]))),
 };
 const mapTitles = {
@@ -48,9 +49,15 @@ const sidesShown = () => [
   { cycle: cycles[byId('right').value](), shot: shots[byId('shots').value - 1] ?? null },
 ].map((side) => (side.shot ? { cycle: last, shot: side.shot } : side));
 
-function captionOf({ cycle, shot }, name) {
-  if (shot) return `${name}: after ${shot.count} shot${shot.count === 1 ? '' : 's'}`;
-  return `${name}: cycle ${cycle.record.cycle}, ${whole(cycle.record.elements)} elements, error ${percent(cycle.record.estimated_error)}`;
+const sideNames = ['Before', 'After'];
+
+function titleOf({ cycle, shot }, side) {
+  return `${sideNames[side]}: ${shot ? `${shot.count} shot${shot.count === 1 ? '' : 's'}` : `cycle ${cycle.record.cycle}`}`;
+}
+
+function detailOf({ cycle, shot }) {
+  const elements = `${whole(cycle.record.elements)} elements`;
+  return shot ? `progressive solve, ${elements}` : `${elements}, error ${percent(cycle.record.estimated_error)}`;
 }
 
 function showLegend(quantity, range, logarithmic) {
@@ -69,7 +76,7 @@ function showLegend(quantity, range, logarithmic) {
 
 function showTexts(sides) {
   ['left', 'right'].forEach((id, i) => {
-    byId(`caption-${id}`).textContent = captionOf(sides[i], id === 'left' ? 'Left' : 'Right');
+    byId(`caption-${id}`).replaceChildren(titleOf(sides[i], i), element('span', detailOf(sides[i])));
     const { cycle } = cycles[byId(id).value]().record;
     byId(`${id}-out`).textContent = `${cycle} of ${run.cycles[run.cycles.length - 1].cycle}`;
     byId(id).setAttribute('aria-valuetext', `cycle ${cycle}`);
@@ -111,6 +118,15 @@ function update(views) {
   views.draw();
 }
 
+/// Lines by what makes them, as meshing/surface_line.h has it.
+const kindTexts = {
+  contact: 'contact: something stands here',
+  EV: 'EV: blocker’s edge, lamp’s corner',
+  VE: 'VE: blocker’s corner, lamp’s edge',
+  EEE: 'EEE: lamp’s edge, two blockers’ edges',
+  plane: 'plane of a lamp or a blocker',
+};
+
 function fillControls() {
   for (const id of ['left', 'right']) byId(id).max = cycles.length - 1;
   byId('right').value = cycles.length - 1;
@@ -123,7 +139,7 @@ function fillControls() {
     const label = element('label', undefined, { class: 'check' });
     const swatch = element('span', undefined, { class: 'swatch', 'aria-hidden': 'true' });
     swatch.style.background = color;
-    label.append(element('input', undefined, { type: 'checkbox', id: `kind-${k}` }), swatch, name);
+    label.append(element('input', undefined, { type: 'checkbox', id: `kind-${k}` }), swatch, kindTexts[name] ?? name);
     byId('kinds').append(label);
   });
   byId('kinds').hidden = byId('kinds').children.length < 2;
@@ -148,7 +164,7 @@ function makeViews() {
         cycle: side.cycle,
         patch: patches[i],
         shot: side.shot ? meanAt(side.shot.light, side.cycle, patches[i]) : null,
-        title: captionOf(side, i === 0 ? 'Left' : 'Right').split(',')[0],
+        title: titleOf(side, i),
       })), scene),
     });
   } catch (problem) {

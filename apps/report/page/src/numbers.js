@@ -4,7 +4,7 @@ const formats = new Map();
 export function significant(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e7)) return value.toExponential(digits - 1);
+  if (size !== 0 && (size < 1e-4 || size >= 1e7)) return Number(value.toPrecision(digits)).toExponential();
   if (!formats.has(digits)) formats.set(digits, new Intl.NumberFormat('en', { maximumSignificantDigits: digits }));
   return formats.get(digits).format(value);
 }
@@ -24,12 +24,10 @@ export function element(name, text, attributes = {}) {
 
 /// A table of rows [name, value, value, …], with a line of heads if there is one. Values are texts, or {text, exact}.
 export function table(rows, heads) {
-  const made = element('table');
+  const made = element('table', undefined, heads ? { class: 'values' } : {});
   const cell = (value) => {
     const number = typeof value === 'object';
-    const made = element('td', number ? value.text : value, number ? { class: 'number', 'data-exact': value.exact } : {});
-    if (number) made.title = String(value.exact);
-    return made;
+    return element('td', number ? value.text : value, number ? { 'data-exact': value.exact } : {});
   };
   if (heads) {
     const row = element('tr');

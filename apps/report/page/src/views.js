@@ -36,7 +36,7 @@ class Side {
       this.cycle = cycle;
       this.mesh.geometry.dispose();
       this.mesh.geometry = patchGeometry(cycle);
-      for (const old of this.lines.children) old.geometry.dispose();
+      for (const old of this.lines.children) old.geometry?.dispose();
       this.lines.clear();
       cycle.lines.forEach((ends, kind) => {
         const drawn = ends.length > 0 ? segments(cycle, ends, this.lineMaterials[kind]) : new Group();
