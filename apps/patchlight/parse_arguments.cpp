@@ -354,7 +354,7 @@ struct Parser {
     /// CLI11 would only say that a command is missing.
     static void check_command(int argc, const char* const* argv)
     {
-        static const std::vector<std::string> commands{"demo",   "inspect", "solve",       "render",  "probe",
+        static const std::vector<std::string> commands{"demo",   "inspect", "solve",       "render",   "probe",
                                                        "verify", "export",  "formfactors", "validate", "report"};
         const std::string word = argc > 1 ? argv[1] : "";
         if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {

@@ -72,6 +72,7 @@ async function expectBothViewsShowSomething(page) {
 
 async function tryControls(page) {
   const press = (selector) => () => page.locator(selector).click();
+  await page.locator('input[value=side]').click();
   await expectChange(page, 'flat', press('input[value=flat]'));
   await expectChange(page, 'Gouraud', press('input[value=gouraud]'));
   await expectChange(page, 'wireframe', press('#wire'));

@@ -128,6 +128,8 @@ const kindTexts = {
 };
 
 function fillControls() {
+  // On a narrow screen the pictures lie one on the other, and stay in sight of the controls.
+  if (window.matchMedia('(max-width: 700px)').matches) document.querySelector('input[value=wipe]').checked = true;
   for (const id of ['left', 'right']) byId(id).max = cycles.length - 1;
   byId('right').value = cycles.length - 1;
   byId('shots').max = shots.length;

@@ -54,12 +54,18 @@ function showSource({ run, timing }) {
   byId('source').append(table(rows));
 }
 
+const textOf = (value) => {
+  if (Array.isArray(value)) return value.length > 0 ? value.map(textOf).join(', ') : 'none';
+  if (typeof value === 'number') return significant(value, 15);
+  return value === null ? 'none' : String(value);
+};
+
 /// Nested options as rows "solve.meshing.max_edge".
 function flattened(value, name = '') {
   if (value !== null && typeof value === 'object' && !Array.isArray(value)) {
     return Object.entries(value).flatMap(([key, inner]) => flattened(inner, name ? `${name}.${key}` : key));
   }
-  return [[name, typeof value === 'string' ? value : JSON.stringify(value)]];
+  return [[name, textOf(value)]];
 }
 
 /// Everything in the page that is text and numbers.
