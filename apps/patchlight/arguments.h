@@ -121,13 +121,20 @@ struct VerifyCommand {
     int threads = 0;
 };
 
+struct ReportCommand {
+    std::string run;
+    std::string page;
+    bool open = false;
+    bool json = false;
+};
+
 /// What only prints: --help and --version.
 struct PrintCommand {
     std::string text;
 };
 
 using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
-                             VerifyCommand, FormFactorsCommand, ValidateCommand, PrintCommand>;
+                             VerifyCommand, FormFactorsCommand, ValidateCommand, ReportCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

@@ -3,6 +3,7 @@
 #include "apps/patchlight/argument_values.h"
 #include "apps/patchlight/export_arguments.h"
 #include "apps/patchlight/form_factor_arguments.h"
+#include "apps/patchlight/report_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/verify_arguments.h"
@@ -272,6 +273,7 @@ struct Parser {
     VerifyCommand verify;
     FormFactorsCommand form_factors;
     ValidateCommand validate;
+    ReportCommand report;
     Texts solve_texts, render_texts, probe_texts;
     SceneTexts inspect_texts;
     FormFactorTexts form_factor_texts;
@@ -297,6 +299,7 @@ struct Parser {
                          form_factors, form_factor_texts);
         add_validate(*app.add_subcommand("validate", "Every form-factor method against known answers"), validate,
                      validate_method);
+        add_report(*app.add_subcommand("report", "A stored run as one HTML page, with the scene in 3-D"), report);
     }
 
     void add_demo()
@@ -343,8 +346,8 @@ struct Parser {
     /// CLI11 would only say that a command is missing.
     static void check_command(int argc, const char* const* argv)
     {
-        static const std::vector<std::string> commands{"demo",   "inspect", "solve",       "render",  "probe",
-                                                       "verify", "export",  "formfactors", "validate"};
+        static const std::vector<std::string> commands{"demo",   "inspect", "solve",       "render",   "probe",
+                                                       "verify", "export",  "formfactors", "validate", "report"};
         const std::string word = argc > 1 ? argv[1] : "";
         if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {
             throw UsageError("usage",
@@ -385,6 +388,10 @@ struct Parser {
         if (app.got_subcommand("validate")) {
             finish_validate(validate, validate_method);
             return validate;
+        }
+        if (app.got_subcommand("report")) {
+            finish_report(report);
+            return report;
         }
         return demo;
     }

@@ -5,6 +5,7 @@
 #include "apps/patchlight/solve_run.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/view_choice.h"
+#include "apps/report/report_page.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -73,7 +74,7 @@ std::string summary_of(const RunFolder& folder)
     }
     std::error_code error;
     for (const char* name : {"before.png", "after.png", "compare.png", "mesh-before.png", "mesh-after.png", "view.exr",
-                             "solution.glb", "run.json"}) {
+                             "solution.glb", "run.json", "report.html"}) {
         if (std::filesystem::exists(folder.path() / name, error)) {
             out += fmt::format("wrote   {}\n", (folder.path() / name).string());
         }
@@ -100,6 +101,15 @@ int report(const RunFolder& folder, const SolveCommand& command, const Session& 
                                              100 * last.estimated_error)
                                : "the linear solver did not reach its tolerance");
     return 4;
+}
+
+/// The demo ends with its report.
+void write_demo_report(const SolveCommand& command, Session& session)
+{
+    if (command.demo) {
+        session.writer.write(std::filesystem::path(command.run) / "report.html",
+                             report_page(open_run(command.run)).html);
+    }
 }
 
 std::vector<std::string> also_ours(const SolveCommand& command)
@@ -156,6 +166,7 @@ int run_command(const SolveCommand& given, Session& session)
     open_folder(folder, command, identity_of(input, command, view), session);
     if (folder->state() == FolderState::finished) {
         session.messages.note(fmt::format("{}: this run is finished already", command.run));
+        write_demo_report(command, session);
         report(*folder, command, session);
         return 0;
     }
@@ -169,6 +180,7 @@ int run_command(const SolveCommand& given, Session& session)
         ~Unhook() { interruption.on_deadline({}); }
     } const unhook{session.interruption};
     SolveRun(input, caster, view, command, *folder, session).go();
+    write_demo_report(command, session);
     return report(*folder, command, session);
 }
 

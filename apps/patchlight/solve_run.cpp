@@ -5,6 +5,7 @@
 #include "apps/patchlight/view_choice.h"
 #include "apps/run/sha256.h"
 #include "apps/run/stored_scene.h"
+#include "apps/run/stored_snapshots.h"
 #include "meshing/scene_error.h"
 #include "solver/snapshots.h"
 
@@ -210,6 +211,7 @@ void SolveRun::write_snapshots(const StoredSolution& last)
     for (std::size_t i = 0; i < shots.size(); ++i) {
         const ShownSolution shown{input_.scene, last.mesh, locator, last.B, snapshots[i]};
         write_picture(fmt::format("shots-{:02}.png", shots[i]), pictures_->png(shown, exposure_));
+        folder_.write(snapshot_file(shots[i]), encode_snapshot(input_.scene, last.mesh, snapshots[i]));
     }
 }
 

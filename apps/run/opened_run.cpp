@@ -11,13 +11,13 @@ void clear_run(const std::filesystem::path& folder)
 {
     std::error_code error;
     for (const char* name : {"run.json", "timing.json", "solution.glb", "before.png", "after.png", "compare.png",
-                             "mesh-before.png", "mesh-after.png", "view.exr"}) {
+                             "mesh-before.png", "mesh-after.png", "view.exr", "report.html"}) {
         std::filesystem::remove(folder / name, error);
     }
     for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
         const std::string name = entry->path().filename().string();
-        if (name.starts_with("shots-") && name.ends_with(".png")) {
+        if (name.starts_with("shots-") && (name.ends_with(".png") || name.ends_with(".glb"))) {
             std::filesystem::remove(entry->path(), error);
         }
     }

@@ -44,7 +44,6 @@ INSTANTIATE_TEST_SUITE_P(Threads, RefusedArguments,
 
 INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
                          ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"},
-                                           std::vector<std::string>{"report", "a", "-o", "b"},
                                            std::vector<std::string>{"study", "run", "a"},
                                            solving({"--refine", "quadratic"}),
                                            solving({"--form-factors", "monte-carlo"}),

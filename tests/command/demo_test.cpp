@@ -13,7 +13,8 @@ TEST_F(DemoTest, NeedsNothingBesideTheProgramAndCanBeRunAgain)
 {
     const Outcome outcome = run({"demo"}, {.folder = folder_});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    for (const char* part : {"elements", "estimated error", "seconds", "patchlight-demo/compare.png"}) {
+    for (const char* part : {"elements", "estimated error", "seconds", "patchlight-demo/compare.png",
+                             "wrote   patchlight-demo/report.html"}) {
         EXPECT_THAT(outcome.out, HasSubstr(part));
     }
     const std::filesystem::path demo = folder_ / "patchlight-demo";

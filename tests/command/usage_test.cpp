@@ -40,7 +40,7 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 {
     for (const char* command :
-         {"demo", "inspect", "solve", "render", "probe", "verify", "export", "formfactors", "validate"}) {
+         {"demo", "inspect", "solve", "render", "probe", "verify", "export", "formfactors", "validate", "report"}) {
         std::istringstream lines(run({command, "--help"}).out);
         for (std::string line, next; std::getline(lines, line);) {
             // An option's first word, its values and its text: with a default, or required, or with [what is done

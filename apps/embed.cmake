@@ -1,4 +1,4 @@
-# Writes a .cpp that holds FILES (names in FOLDER) as byte arrays behind demo_scene_files().
+# Writes a .cpp that holds FILES (names in FOLDER) as byte arrays behind FUNCTION(), which HEADER declares.
 set(arrays "")
 set(entries "")
 set(number 0)
@@ -9,7 +9,7 @@ foreach(name IN LISTS FILES)
   string(APPEND entries "        {\"${name}\", {file_${number}, sizeof file_${number}}},\n")
   math(EXPR number "${number} + 1")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"apps/patchlight/demo_scene.h\"
+file(WRITE ${OUTPUT} "#include \"${HEADER}\"
 
 namespace patchlight {
 
@@ -18,7 +18,7 @@ namespace {
 ${arrays}
 }  // namespace
 
-std::vector<std::pair<std::string_view, std::string_view>> demo_scene_files()
+std::vector<std::pair<std::string_view, std::string_view>> ${FUNCTION}()
 {
     return {
 ${entries}    };
