@@ -49,4 +49,9 @@ bool draw_text(Image& image, int x, int y, const std::string& text, int size, co
     return loaded().draw_text(image, x, y, text, size, color, align);
 }
 
+ColorTable color_table(const std::string& name)
+{
+    return loaded().color_table(name);
+}
+
 }  // namespace patchlight

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "apps/imaging/picture.h"
+#include "apps/imaging/quantity.h"
+#include "apps/imaging/value_scale.h"
 #include "apps/run/run_folder.h"
 #include "formfactor/pair_factor.h"
 #include "meshing/read_scene.h"
@@ -54,6 +56,13 @@ struct InspectCommand {
     bool json = false;
 };
 
+struct FalseColorArguments {
+    std::optional<Quantity> quantity;                ///< unset: light as it is
+    std::optional<std::pair<double, double>> range;  ///< unset: chosen
+    ScaleKind scale = ScaleKind::linear;
+    int isolines = 0;
+};
+
 struct RenderCommand {
     std::string run;
     std::string image;
@@ -66,6 +75,7 @@ struct RenderCommand {
     Shade shade = Shade::gouraud;
     bool wireframe = false;
     std::optional<double> exposure;  ///< unset: auto
+    FalseColorArguments false_color;
 };
 
 struct ProbeCommand {

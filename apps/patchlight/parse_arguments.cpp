@@ -1,6 +1,7 @@
 #include "apps/patchlight/arguments.h"
 
 #include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/false_color_arguments.h"
 #include "apps/patchlight/form_factor_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/usage_error.h"
@@ -23,6 +24,7 @@ struct Texts {
                 indicator = "residual", marking = "doerfler", directions = "stratified", order = "unshot-power",
                 pictures = "all", memory, size, snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from,
                 to, up = "0,1,0";
+    FalseColorTexts false_color;
     double max_edge = 0, fov = 0;
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;
@@ -227,6 +229,8 @@ void add_render(CLI::App& app, RenderCommand& c, Texts& t)
     app.add_option("--exposure", t.exposure, "stops, or auto; an .exr is always linear")
         ->type_name("EV|auto")
         ->capture_default_str();
+    add_show(app, t.false_color);
+    add_false_color(app, c.false_color, t.false_color);
 }
 
 void finish_render(RenderCommand& c, const Texts& t)
@@ -255,6 +259,10 @@ void finish_render(RenderCommand& c, const Texts& t)
     }
     if (!c.image.ends_with(".png") && !c.image.ends_with(".exr")) {
         throw UsageError("usage", "-o: \"" + c.image + "\" ends neither in .png nor in .exr");
+    }
+    finish_false_color(c.false_color, t.false_color);
+    if (c.false_color.quantity && (c.image.ends_with(".exr") || c.exposure)) {
+        throw UsageError("usage", "false colours are for a .png and have no --exposure");
     }
 }
 
