@@ -1,3 +1,4 @@
+#include "apps/imaging/exposure.h"
 #include "apps/imaging/image_file_module.h"
 
 #include <dlfcn.h>
@@ -51,7 +52,9 @@ bool draw_text(Image& image, int x, int y, const std::string& text, int size, co
 
 ColorTable color_table(const std::string& name)
 {
-    return loaded().color_table(name);
+    ColorTable table = loaded().color_table(name);
+    for (Rgb& color : table) color = {srgb_encoded(color.r), srgb_encoded(color.g), srgb_encoded(color.b)};
+    return table;
 }
 
 }  // namespace patchlight

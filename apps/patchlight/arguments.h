@@ -78,6 +78,45 @@ struct RenderCommand {
     FalseColorArguments false_color;
 };
 
+/// What --fail-above can hold a comparison to.
+enum class Metric { flip, flip_p95, flip_max, rmse, l2 };
+
+struct CompareLimit {
+    Metric metric = Metric::flip;
+    std::string name;
+    double value = 0;
+};
+
+struct CompareCommand {
+    std::string a, b;  ///< RUN, RUN@N, RUN@first, RUN@last
+    std::string folder;
+    std::string view;
+    std::optional<std::pair<int, int>> size;
+    std::optional<double> exposure;  ///< unset: auto
+    FalseColorArguments false_color;
+    std::size_t points = 0;
+    std::uint64_t seed = 1;
+    std::vector<CompareLimit> limits;
+    bool json = false;
+};
+
+enum class Animated { cycles, shots, path };
+
+inline constexpr int most_frames = 1000;
+
+struct AnimateCommand {
+    std::string run;     ///< as CompareCommand's
+    std::string output;  ///< a .png, or a folder for frames
+    Animated what = Animated::cycles;
+    std::string path;  ///< file of cameras
+    int frames = 48;   ///< of a path
+    int delay = 0;     ///< ms a frame
+    std::string view;
+    std::optional<std::pair<int, int>> size;
+    std::optional<double> exposure;  ///< unset: auto
+    bool wireframe = false;
+};
+
 struct ProbeCommand {
     std::string run;
     std::string points;
@@ -132,8 +171,9 @@ struct PrintCommand {
     std::string text;
 };
 
-using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
-                             VerifyCommand, FormFactorsCommand, ValidateCommand, PrintCommand>;
+using Command =
+    std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand, VerifyCommand,
+                 FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);
