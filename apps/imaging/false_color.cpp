@@ -40,7 +40,10 @@ public:
     Colorist(const QuantityMap& map, const FalseColor& how) : map_(map), how_(how)
     {
         for (const Rgb& color : how.table) linear_.push_back(decoded(color));
-        for (const double value : how.isolines) levels_.push_back(how.scale.coordinate(value));
+        for (const double value : how.isolines) {
+            // Where a scale begins at 0, dark places would be scattered with pieces of that line.
+            if (value != how.scale.low) levels_.push_back(how.scale.coordinate(value));
+        }
     }
 
     /// Of one sample, linear.
@@ -109,7 +112,7 @@ void fill(Image& image, int x0, int x1, int y0, int y1, const Rgb& color)
 
 std::string text_of(double value)
 {
-    return fmt::format("{:.4g}", value);
+    return fmt::format("{:.6g}", value);
 }
 
 /// DejaVu Sans is about so wide; what is asked for is only whether words collide.

@@ -13,7 +13,7 @@ namespace patchlight {
 struct FalseColor {
     ColorTable table;
     ValueScale scale;
-    std::vector<double> isolines{};  ///< values along which lines are drawn
+    std::vector<double> isolines{};  ///< values along which lines are drawn, but for the scale's low
     bool patch_borders = false;      ///< darkens the borders of patches
 };
 

@@ -31,9 +31,10 @@ void add_animate(CLI::App& app, AnimateCommand& c, AnimateTexts& t)
         ->type_name("EV|auto")
         ->capture_default_str();
     app.add_flag("--wireframe", c.wireframe, "draw the patches' edges [off]");
-    t.delay = app.add_option("--delay", c.delay, "time of a frame, the last three times as long [800; path: 40]")
-                  ->check(whole_between(1, 65535))
-                  ->type_name("MS");
+    t.delay =
+        app.add_option("--delay", c.delay, "milliseconds a frame stays, the last three times as long [800; path: 40]")
+            ->check(whole_between(1, 65535))
+            ->type_name("MS");
 }
 
 void finish_animate(AnimateCommand& c, const AnimateTexts& t)

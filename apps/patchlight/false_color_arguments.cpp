@@ -29,9 +29,7 @@ std::pair<double, double> range_in(const std::string& text)
     return {low, high};
 }
 
-}  // namespace
-
-void add_false_color(CLI::App& app, FalseColorArguments& a, FalseColorTexts& t)
+void add_all(CLI::App& app, FalseColorArguments& a, FalseColorTexts& t, const std::string& usual_scale)
 {
     app.add_option("--false-color", t.quantity,
                    "light as colours with a legend below: lux is 683 lm/W times the luminance of the irradiance "
@@ -39,7 +37,7 @@ void add_false_color(CLI::App& app, FalseColorArguments& a, FalseColorTexts& t)
         ->check(CLI::IsMember({"lux", "irradiance", "radiosity"}));
     app.add_option("--range", t.range, "values of the first and the last colour [what most of the picture has]")
         ->type_name("LOW:HIGH");
-    app.add_option("--scale", t.scale, "of the colours: linear or log [linear; error and size: log]")
+    app.add_option("--scale", t.scale, "of the colours: linear or log [" + usual_scale + "]")
         ->check(CLI::IsMember({"linear", "log"}));
     app.add_option("--isolines", a.isolines, "lines of equal value at round values, so many at most")
         ->check(whole_between(0, 100))
@@ -47,12 +45,20 @@ void add_false_color(CLI::App& app, FalseColorArguments& a, FalseColorTexts& t)
         ->capture_default_str();
 }
 
-void add_show(CLI::App& app, FalseColorTexts& t)
+}  // namespace
+
+void add_false_color(CLI::App& app, FalseColorArguments& a, FalseColorTexts& t)
+{
+    add_all(app, a, t, "linear");
+}
+
+void add_false_color_and_show(CLI::App& app, FalseColorArguments& a, FalseColorTexts& t)
 {
     app.add_option("--show", t.show,
                    "radiosity, the elements' estimated error of it in W/m2, or their size in m2; the latter as colours")
         ->check(CLI::IsMember({"radiosity", "error", "size"}))
         ->capture_default_str();
+    add_all(app, a, t, "linear; error and size: log");
 }
 
 void finish_false_color(FalseColorArguments& a, const FalseColorTexts& t)

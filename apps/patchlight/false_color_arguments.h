@@ -15,8 +15,8 @@ struct FalseColorTexts {
 
 /// --false-color, --range, --scale and --isolines.
 void add_false_color(CLI::App& app, FalseColorArguments& arguments, FalseColorTexts& texts);
-/// --show beside them.
-void add_show(CLI::App& app, FalseColorTexts& texts);
+/// These, and --show.
+void add_false_color_and_show(CLI::App& app, FalseColorArguments& arguments, FalseColorTexts& texts);
 /// Throws UsageError.
 void finish_false_color(FalseColorArguments& arguments, const FalseColorTexts& texts);
 

@@ -28,8 +28,7 @@ void add_render(CLI::App& app, RenderCommand& c, RenderTexts& t)
     app.add_option("--exposure", t.exposure, "stops, or auto; an .exr is always linear")
         ->type_name("EV|auto")
         ->capture_default_str();
-    add_show(app, t.false_color);
-    add_false_color(app, c.false_color, t.false_color);
+    add_false_color_and_show(app, c.false_color, t.false_color);
 }
 
 void finish_render(RenderCommand& c, const RenderTexts& t)

@@ -23,7 +23,7 @@ class Runs:
         self.command, self.folder = command, folder
 
     def call(self, *words):
-        subprocess.run([self.command, *map(str, words)], check=True)
+        subprocess.run([self.command, *map(str, words)], check=True, stdout=subprocess.DEVNULL)
 
     def solved(self, name, scene, *options):
         run = self.folder / name
@@ -39,12 +39,27 @@ class Runs:
         return self.solved("shots", "cornell-box.obj", "--unit", "mm", "--max-elements", 4000, "--size", "300x300",
                            "--snapshots", ",".join(map(str, SHOTS)))
 
-    def gallery(self):
-        return self.solved("gallery", "gallery.obj", "--max-elements", 20000, "--pictures", "none")
+    def room(self):
+        return self.solved("room", "furniture-room.obj", "--max-elements", 12000, "--pictures", "none")
+
+
+def before_and_after(runs, file):
+    # From `demo`, but so large that it stays below LARGEST.
+    file.write_bytes((runs.box() / "compare.png").read_bytes())
+
+
+def mesh(runs, file):
+    file.write_bytes((runs.box() / "mesh-after.png").read_bytes())
+
+
+def lines(runs, file):
+    run = runs.solved("wall", "wall-on-floor.obj", "--max-elements", 600, "--pictures", "none")
+    runs.call("render", run, "-o", file, "--wireframe", "--from", "0.75,0.1,0.6", "--to", "0.6,0.5,0", "--up", "0,0,1",
+              "--size", "640x480")
 
 
 def false_color(runs, file):
-    runs.call("render", runs.gallery(), "-o", file, "--false-color", "lux", "--isolines", 8, "--size", "560x315")
+    runs.call("render", runs.room(), "-o", file, "--false-color", "lux", "--scale", "log", "--isolines", 9, "--size", "560x420")
 
 
 def error_map(runs, file):
@@ -71,7 +86,10 @@ def shot(count):
 
 
 ALL = {
-    "gallery-lux.png": false_color,
+    "cornell-box-compare.png": before_and_after,
+    "cornell-box-mesh.png": mesh,
+    "discontinuity-lines.png": lines,
+    "furniture-room-lux.png": false_color,
     "cornell-box-error.png": error_map,
     "cornell-box-size.png": size_map,
     "cornell-box-flip.png": compared("flip.png"),

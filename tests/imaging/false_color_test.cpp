@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -148,6 +149,12 @@ TEST(FalseColor, AnIsolineEndsWhereAnotherSurfaceBegins)
     }
     const FalseColor how{ColorTable(2, Rgb(0.9)), {ScaleKind::linear, 0, 1}, {0.5}};
     for (const float value : false_color(map, how).rgb) EXPECT_NEAR(value, 0.9, 1e-5);
+}
+
+TEST(FalseColor, NoIsolineIsDrawnWhereTheScaleBegins)
+{
+    const FalseColor how{ColorTable(2, Rgb(0.9)), {ScaleKind::linear, 0, 1}, {0}};
+    for (const float value : false_color(ramp(20, 4), how).rgb) EXPECT_NEAR(value, 0.9, 1e-5);
 }
 
 TEST(FalseColor, TheLegendHoldsTheWholeTableAndLeavesThePictureAlone)
