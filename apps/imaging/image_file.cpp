@@ -1,3 +1,4 @@
+#include "apps/imaging/exposure.h"
 #include "apps/imaging/image_file_module.h"
 
 #include <dlfcn.h>
@@ -47,6 +48,13 @@ ImageFile read_image(const std::filesystem::path& file)
 bool draw_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& color, TextAlign align)
 {
     return loaded().draw_text(image, x, y, text, size, color, align);
+}
+
+ColorTable color_table(const std::string& name)
+{
+    ColorTable table = loaded().color_table(name);
+    for (Rgb& color : table) color = {srgb_encoded(color.r), srgb_encoded(color.g), srgb_encoded(color.b)};
+    return table;
 }
 
 }  // namespace patchlight

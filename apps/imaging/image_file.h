@@ -36,4 +36,11 @@ enum class TextAlign { left, center, right };
 bool draw_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& color,
                TextAlign align = TextAlign::left);
 
+/// Colours for numbers from 0 (the first) to 1 (the last), as sRGB values between 0 and 1.
+using ColorTable = std::vector<Rgb>;
+
+/// 256 colours of one of OpenImageIO's maps: "viridis", "inferno", "magma", "plasma", "turbo". Throws
+/// std::runtime_error for a name that it doesn't know.
+ColorTable color_table(const std::string& name);
+
 }  // namespace patchlight

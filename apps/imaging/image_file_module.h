@@ -11,6 +11,7 @@ struct ImageFileModule {
     std::vector<unsigned char> (*encode_exr)(const Image& radiance, const ImageMetadata& metadata);
     ImageFile (*read_image)(const std::filesystem::path& file);
     bool (*draw_text)(Image& image, int x, int y, const std::string& text, int size, const Rgb& color, TextAlign align);
+    ColorTable (*color_table)(const std::string& name);  ///< linear, as the library has it
 };
 
 /// The module's only entry.

@@ -2,6 +2,7 @@
 
 #include "apps/imaging/exposure.h"
 #include "apps/imaging/line_overlay.h"
+#include "apps/imaging/seen_point.h"
 #include "apps/imaging/view_rays.h"
 
 #include <tbb/blocked_range.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 
 namespace patchlight {
@@ -22,35 +22,15 @@ struct Sample {
     std::uint32_t patch = Id<PatchTag>::invalid_value;
 };
 
-/// Where the ray meets the surface's plane, in plane coordinates.
-std::optional<Vec2> meet(const PlaneFrame& frame, const Vec3& from, const Vec3& direction)
-{
-    const double t = glm::dot(frame.origin - from, frame.n) / glm::dot(direction, frame.n);
-    if (!std::isfinite(t)) {
-        return std::nullopt;
-    }
-    return frame.to_plane(from + t * direction);
-}
-
 Sample shade(const ShownSolution& solution, const ViewRays& rays, const Vec3& direction, std::uint32_t surface,
              Shade how)
 {
-    Sample sample;
-    if (surface >= HitBatch::black_back) {
-        return sample;
+    const auto seen = seen_point(solution, rays, direction, surface);
+    if (!seen) {
+        return {};
     }
-    const SurfaceId id{surface};
-    const auto q = meet(solution.scene.surface(id).frame, rays.from(), direction);
-    if (!q) {
-        return sample;
-    }
-    const PatchId patch = solution.locator.locate(id, static_cast<float>(q->x), static_cast<float>(q->y));
-    if (!patch.valid()) {
-        return sample;
-    }
-    sample.patch = patch.value;
-    sample.radiance = (how == Shade::flat ? solution.B[patch] : solution.light().at(patch, *q)) / std::numbers::pi;
-    return sample;
+    const Rgb B = how == Shade::flat ? solution.B[seen->patch] : solution.light().at(seen->patch, seen->in_plane);
+    return {B / std::numbers::pi, seen->patch.value};
 }
 
 /// What is drawn as white.

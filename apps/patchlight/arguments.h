@@ -2,6 +2,8 @@
 
 #include "apps/imaging/lightmap.h"
 #include "apps/imaging/picture.h"
+#include "apps/imaging/quantity.h"
+#include "apps/imaging/value_scale.h"
 #include "apps/run/run_folder.h"
 #include "formfactor/pair_factor.h"
 #include "meshing/read_scene.h"
@@ -55,6 +57,13 @@ struct InspectCommand {
     bool json = false;
 };
 
+struct FalseColorArguments {
+    std::optional<Quantity> quantity;                ///< unset: light as it is
+    std::optional<std::pair<double, double>> range;  ///< unset: chosen
+    ScaleKind scale = ScaleKind::linear;
+    int isolines = 0;
+};
+
 struct RenderCommand {
     std::string run;
     std::string image;
@@ -67,6 +76,46 @@ struct RenderCommand {
     Shade shade = Shade::gouraud;
     bool wireframe = false;
     std::optional<double> exposure;  ///< unset: auto
+    FalseColorArguments false_color;
+};
+
+/// What --fail-above can hold a comparison to.
+enum class Metric { flip, flip_p95, flip_max, rmse, l2 };
+
+struct CompareLimit {
+    Metric metric = Metric::flip;
+    std::string name;
+    double value = 0;
+};
+
+struct CompareCommand {
+    std::string a, b;  ///< RUN, RUN@N, RUN@first, RUN@last
+    std::string folder;
+    std::string view;
+    std::optional<std::pair<int, int>> size;
+    std::optional<double> exposure;  ///< unset: auto
+    FalseColorArguments false_color;
+    std::size_t points = 0;
+    std::uint64_t seed = 1;
+    std::vector<CompareLimit> limits;
+    bool json = false;
+};
+
+enum class Animated { cycles, shots, path };
+
+inline constexpr int most_frames = 1000;
+
+struct AnimateCommand {
+    std::string run;     ///< as CompareCommand's
+    std::string output;  ///< a .png, or a folder for frames
+    Animated what = Animated::cycles;
+    std::string path;  ///< file of cameras
+    int frames = 48;   ///< of a path
+    int delay = 0;     ///< ms a frame
+    std::string view;
+    std::optional<std::pair<int, int>> size;
+    std::optional<double> exposure;  ///< unset: auto
+    bool wireframe = false;
 };
 
 struct ProbeCommand {
@@ -133,8 +182,9 @@ struct PrintCommand {
     std::string text;
 };
 
-using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
-                             VerifyCommand, FormFactorsCommand, ValidateCommand, ReportCommand, PrintCommand>;
+using Command =
+    std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand, VerifyCommand,
+                 FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand, ReportCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

@@ -24,6 +24,8 @@ int run_command(const ExportCommand& command, Session& session);
 int run_command(const VerifyCommand& command, Session& session);
 int run_command(const FormFactorsCommand& command, Session& session);
 int run_command(const ValidateCommand& command, Session& session);
+int run_command(const CompareCommand& command, Session& session);
+int run_command(const AnimateCommand& command, Session& session);
 int run_command(const ReportCommand& command, Session& session);
 int run_command(const PrintCommand& command, Session& session);
 

@@ -1,8 +1,11 @@
 #include "apps/patchlight/arguments.h"
 
+#include "apps/patchlight/animate_arguments.h"
 #include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/compare_arguments.h"
 #include "apps/patchlight/export_arguments.h"
 #include "apps/patchlight/form_factor_arguments.h"
+#include "apps/patchlight/render_arguments.h"
 #include "apps/patchlight/report_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/usage_error.h"
@@ -23,9 +26,8 @@ struct Texts {
     SceneTexts scene;
     std::string refine = "both", direct = "exact", elements = "linear", solver = "gauss-seidel", method = "hemisphere",
                 indicator = "residual", marking = "doerfler", directions = "stratified", order = "unshot-power",
-                pictures = "all", memory, size, snapshots, shade = "gouraud", exposure = "auto", cycle = "last", from,
-                to, up = "0,1,0";
-    double max_edge = 0, fov = 0;
+                pictures = "all", memory, size, snapshots;
+    double max_edge = 0;
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;
 };
@@ -206,60 +208,6 @@ void finish_solve(SolveCommand& c, const Texts& t)
     }
 }
 
-void add_render(CLI::App& app, RenderCommand& c, Texts& t)
-{
-    app.add_option("run", c.run, "folder of a run")->required()->type_name("RUN");
-    app.add_option("-o", c.image, ".png or .exr file to write")->required()->type_name("IMAGE");
-    app.add_option("--cycle", t.cycle, "which cycle: a number, first or last")->type_name("N")->capture_default_str();
-    auto* view = app.add_option("--view", c.view, "a camera of the run [the first]")->type_name("NAME");
-    app.add_option("--from", t.from, "where the camera is, in the scene file's units [the view's]")
-        ->type_name("x,y,z")
-        ->excludes(view);
-    app.add_option("--to", t.to, "what it looks at [what the view looks at]")->type_name("x,y,z")->excludes(view);
-    app.add_option("--up", t.up, "what is up with --from and --to")->type_name("x,y,z")->capture_default_str();
-    app.add_option("--fov", t.fov, "vertical field of view, degrees [the view's]")
-        ->check(number_between(0.1, 170))
-        ->type_name("DEG");
-    app.add_option("--size", t.size, "of the picture [640 high, as wide as the camera says or 640]")->type_name("WxH");
-    app.add_option("--shade", t.shade, "the elements' reconstruction, or one value a patch")
-        ->check(CLI::IsMember({"gouraud", "flat"}))
-        ->capture_default_str();
-    app.add_flag("--wireframe", c.wireframe,
-                 "draw the patches' edges, those on lines where light breaks off in colours [off]");
-    app.add_option("--exposure", t.exposure, "stops, or auto; an .exr is always linear")
-        ->type_name("EV|auto")
-        ->capture_default_str();
-}
-
-void finish_render(RenderCommand& c, const Texts& t)
-{
-    c.cycle = cycle_in("--cycle", t.cycle);
-    c.shade = t.shade == "flat" ? Shade::flat : Shade::gouraud;
-    if (t.from.empty() != t.to.empty()) {
-        throw UsageError("usage", "--from and --to belong together");
-    }
-    if (!t.from.empty()) {
-        c.from = vector_in("--from", t.from);
-        c.to = vector_in("--to", t.to);
-    }
-    c.up = vector_in("--up", t.up);
-    if (c.from && (*c.from == *c.to || c.up == Vec3(0.0))) {
-        throw UsageError("usage", "--from and --to are one point, or --up has no length");
-    }
-    if (t.fov > 0) {
-        c.vertical_fov = t.fov;
-    }
-    if (!t.size.empty()) {
-        c.size = size_in("--size", t.size);
-    }
-    if (t.exposure != "auto") {
-        c.exposure = number_in("--exposure", t.exposure);
-    }
-    if (!c.image.ends_with(".png") && !c.image.ends_with(".exr")) {
-        throw UsageError("usage", "-o: \"" + c.image + "\" ends neither in .png nor in .exr");
-    }
-}
-
 /// All that CLI11 fills in; lives while it parses.
 struct Parser {
     CLI::App app{"Patchlight: radiosity on adaptive meshes.", "patchlight"};
@@ -273,11 +221,16 @@ struct Parser {
     VerifyCommand verify;
     FormFactorsCommand form_factors;
     ValidateCommand validate;
+    CompareCommand compare;
+    AnimateCommand animate;
     ReportCommand report;
-    Texts solve_texts, render_texts, probe_texts;
+    Texts solve_texts;
+    RenderTexts render_texts;
     SceneTexts inspect_texts;
     FormFactorTexts form_factor_texts;
-    std::string validate_method, verify_cycle = "last";
+    CompareTexts compare_texts;
+    AnimateTexts animate_texts;
+    std::string validate_method, verify_cycle = "last", probe_cycle = "last";
 
     Parser()
     {
@@ -285,12 +238,17 @@ struct Parser {
         app.set_version_flag("--version", fmt::format("patchlight {} ({})", tool_version(), tool_commit()));
         app.set_help_flag("-h,--help", "print this and stop");
         app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 bad scene, 4 not converged or a bound\n"
-                   "missed, 5 over a limit, 6 output could not be written, 130/143 interrupted.\n"
+                   "missed, 5 over a limit, 6 output could not be written, 7 a comparison\n"
+                   "over its threshold, 130/143 interrupted.\n"
                    "patchlight COMMAND --help tells a command's options.");
         add_demo();
         add_inspect();
         add_solve();
         add_render(*app.add_subcommand("render", "A picture of a stored run"), render, render_texts);
+        add_compare(*app.add_subcommand("compare", "Two runs seen alike: pictures, differences, numbers"), compare,
+                    compare_texts);
+        add_animate(*app.add_subcommand("animate", "A run's cycles, shots or a camera's path as an animated picture"),
+                    animate, animate_texts);
         add_probe();
         add_export(*app.add_subcommand("export", "The solution in other programs' formats"), exported, export_texts);
         add_verify(*app.add_subcommand("verify", "The error of a stored run, measured by path tracing"), verify,
@@ -338,7 +296,7 @@ struct Parser {
             ->required()
             ->type_name("FILE");
         c.add_option("-o", probe.output, "CSV to write [standard output]")->type_name("FILE");
-        c.add_option("--cycle", probe_texts.cycle, "which cycle: a number, first or last")
+        c.add_option("--cycle", probe_cycle, "which cycle: a number, first or last")
             ->type_name("N")
             ->capture_default_str();
     }
@@ -346,8 +304,9 @@ struct Parser {
     /// CLI11 would only say that a command is missing.
     static void check_command(int argc, const char* const* argv)
     {
-        static const std::vector<std::string> commands{"demo",   "inspect", "solve",       "render",   "probe",
-                                                       "verify", "export",  "formfactors", "validate", "report"};
+        static const std::vector<std::string> commands{"demo",    "inspect", "solve",       "render",
+                                                       "compare", "animate", "probe",       "verify",
+                                                       "export",  "report",  "formfactors", "validate"};
         const std::string word = argc > 1 ? argv[1] : "";
         if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {
             throw UsageError("usage",
@@ -369,8 +328,16 @@ struct Parser {
             finish_render(render, render_texts);
             return render;
         }
+        if (app.got_subcommand("compare")) {
+            finish_compare(compare, compare_texts);
+            return compare;
+        }
+        if (app.got_subcommand("animate")) {
+            finish_animate(animate, animate_texts);
+            return animate;
+        }
         if (app.got_subcommand("probe")) {
-            probe.cycle = cycle_in("--cycle", probe_texts.cycle);
+            probe.cycle = cycle_in("--cycle", probe_cycle);
             return probe;
         }
         if (app.got_subcommand("export")) {

@@ -20,6 +20,9 @@ public:
     /// The exposure that shows this solution well.
     double exposure_for(const ShownSolution& solution) const;
 
+    /// Two samples along each side of a pixel.
+    const ViewHits& samples() const { return fine_; }
+
     Image srgb(const ShownSolution& solution, double exposure, bool patch_borders = false) const;
     std::vector<unsigned char> png(const ShownSolution& solution, double exposure, bool patch_borders = false) const;
     /// Linear B/π through the pixels' centres, with the camera and the options as metadata.

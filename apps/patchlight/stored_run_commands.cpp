@@ -2,6 +2,7 @@
 #include "apps/imaging/image_file.h"
 #include "apps/imaging/line_overlay.h"
 #include "apps/patchlight/commands.h"
+#include "apps/patchlight/false_color_pictures.h"
 #include "apps/patchlight/run_pictures.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/view_choice.h"
@@ -61,6 +62,14 @@ int run_command(const RenderCommand& command, Session& session)
     const ShownSolution shown{stored.scene, stored.mesh, locator, stored.B, stored.vertex_B, &stored.middle_B};
     const View view = render_view(command, stored.scene, caster);
     const auto [width, height] = picture_size(command.size, view);
+    if (command.false_color.quantity) {
+        const ViewHits hits = trace_view(caster, view, width, height, 2);
+        const FalseColorMap map{shown, stored.eta, hits, command.false_color, command.shade};
+        session.interruption.check();
+        session.writer.write(folder_first(command.image),
+                             encode_png(map.picture(scale_of({&map}, command.false_color), command.wireframe)));
+        return 0;
+    }
     PictureOptions options{.width = width, .height = height, .samples = 1, .shade = command.shade};
     const ViewHits centers = trace_view(caster, view, width, height, 1);
     session.interruption.check();

@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, RefusedArguments,
                                            solving({"--threads", "1000000000"})));
 
 INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
-                         ::testing::Values(std::vector<std::string>{"compare", "a", "b", "-o", "c"},
+                         ::testing::Values(std::vector<std::string>{"study", "check", "a"},
                                            std::vector<std::string>{"study", "run", "a"},
                                            solving({"--refine", "quadratic"}),
                                            solving({"--form-factors", "monte-carlo"}),
@@ -74,6 +74,55 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--cycle", "-1"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--exposure", "bright"},
                       std::vector<std::string>{"render", "run", "-o", "a.png", "--fov", "0"}));
+
+std::vector<std::string> comparing(std::vector<std::string> words)
+{
+    words.insert(words.begin(), {"compare", "a", "b", "-o", "c"});
+    return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Compare, RefusedArguments,
+    ::testing::Values(std::vector<std::string>{"compare"}, std::vector<std::string>{"compare", "a", "-o", "c"},
+                      std::vector<std::string>{"compare", "a", "b"}, comparing({"d"}), comparing({"--size", "10"}),
+                      comparing({"--exposure", "bright"}), comparing({"--points", "-1"}),
+                      comparing({"--fail-above", "flip"}), comparing({"--fail-above", "ssim=1"}),
+                      comparing({"--fail-above", "flip=nan"}), comparing({"--fail-above", "flip=-1"}),
+                      comparing({"--fail-above", "l2=0.1"}), comparing({"--range", "0:1"}),
+                      comparing({"--false-color", "lux", "--range", "1:1"}),
+                      comparing({"--false-color", "lux", "--range", "1"}),
+                      comparing({"--false-color", "lux", "--range", "0:1", "--scale", "log"}),
+                      comparing({"--false-color", "lumen"}), comparing({"--show", "error"})));
+
+std::vector<std::string> rendering(std::vector<std::string> words)
+{
+    words.insert(words.begin(), {"render", "a", "-o", "b.png"});
+    return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    FalseColor, RefusedArguments,
+    ::testing::Values(rendering({"--show", "flux"}), rendering({"--show", "error", "--false-color", "lux"}),
+                      rendering({"--isolines", "4"}), rendering({"--scale", "log"}),
+                      rendering({"--false-color", "lux", "--isolines", "-1"}),
+                      rendering({"--false-color", "lux", "--exposure", "1"}),
+                      std::vector<std::string>{"render", "a", "-o", "b.exr", "--false-color", "lux"}));
+
+std::vector<std::string> animating(std::vector<std::string> words)
+{
+    words.insert(words.begin(), {"animate", "a", "-o", "b.png"});
+    return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Animate, RefusedArguments,
+    ::testing::Values(std::vector<std::string>{"animate", "a"}, std::vector<std::string>{"animate", "a", "-o", "b.gif"},
+                      animating({"--what", "frames"}), animating({"--what", "path"}), animating({"--path", "a.json"}),
+                      animating({"--frames", "10"}), animating({"--what", "path", "--path", "p", "--frames", "1"}),
+                      animating({"--what", "path", "--path", "p", "--frames", "1001"}),
+                      animating({"--what", "path", "--path", "p", "--view", "front"}),
+                      animating({"--what", "shots", "--size", "9x9"}), animating({"--what", "shots", "--wireframe"}),
+                      animating({"--delay", "0"}), animating({"--delay", "65536"})));
 
 INSTANTIATE_TEST_SUITE_P(Verify, RefusedArguments,
                          ::testing::Values(std::vector<std::string>{"verify"},
@@ -256,6 +305,37 @@ TEST(Arguments, ExportHasDefaultsForLightmaps)
                                "--quantity", "irradiance"});
     EXPECT_EQ(both.lightmap.size, 512);
     EXPECT_EQ(both.quantity, LightmapQuantity::irradiance);
+}
+
+TEST(Arguments, CompareTakesLimitsThatMayBeGivenAgain)
+{
+    const auto command = std::get<CompareCommand>(
+        parse(comparing({"--fail-above", "flip=0.05", "--fail-above", "l2=1e-3", "--points", "9", "--view", "v"})));
+    ASSERT_EQ(command.limits.size(), 2U);
+    EXPECT_EQ(command.limits[1].metric, Metric::l2);
+    EXPECT_EQ(command.limits[1].value, 1e-3);
+    EXPECT_FALSE(command.false_color.quantity);
+    EXPECT_EQ(std::get<CompareCommand>(parse({"compare", "--fail-above", "rmse=1", "x", "y", "-o", "z"})).b, "y");
+}
+
+TEST(Arguments, ErrorAndSizeAreLogarithmicUnlessTold)
+{
+    const auto color = [](std::vector<std::string> words) {
+        return std::get<RenderCommand>(parse(rendering(std::move(words)))).false_color;
+    };
+    EXPECT_FALSE(color({}).quantity);
+    EXPECT_EQ(color({"--false-color", "lux"}).scale, ScaleKind::linear);
+    EXPECT_EQ(color({"--show", "error"}).quantity, Quantity::error);
+    EXPECT_EQ(color({"--show", "size"}).scale, ScaleKind::logarithmic);
+    EXPECT_EQ(color({"--show", "size", "--scale", "linear"}).scale, ScaleKind::linear);
+    EXPECT_EQ(color({"--false-color", "lux", "--range", "-1:2.5"}).range, std::pair(-1.0, 2.5));
+}
+
+TEST(Arguments, AFrameTakesItsTimeByWhatIsShown)
+{
+    EXPECT_EQ(std::get<AnimateCommand>(parse(animating({}))).delay, 800);
+    EXPECT_EQ(std::get<AnimateCommand>(parse(animating({"--what", "path", "--path", "p"}))).delay, 40);
+    EXPECT_EQ(std::get<AnimateCommand>(parse(animating({"--delay", "7"}))).delay, 7);
 }
 
 TEST(Arguments, ValidateTakesOneMethodOrAll)

@@ -39,8 +39,8 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 
 TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 {
-    for (const char* command :
-         {"demo", "inspect", "solve", "render", "probe", "verify", "export", "formfactors", "validate", "report"}) {
+    for (const char* command : {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export",
+                                "report", "formfactors", "validate"}) {
         std::istringstream lines(run({command, "--help"}).out);
         for (std::string line, next; std::getline(lines, line);) {
             // An option's first word, its values and its text: with a default, or required, or with [what is done
@@ -62,11 +62,12 @@ TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 
 TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
 {
-    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "verify", "export"}) {
+    for (const char* command :
+         {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export"}) {
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
-        for (const char* absent : {"compare", "false-color", "--mesh "}) {
+        for (const char* absent : {"--mesh "}) {
             EXPECT_THAT(help.out, Not(HasSubstr(absent))) << command;
         }
     }

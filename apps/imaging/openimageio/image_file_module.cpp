@@ -101,9 +101,33 @@ bool write_text(Image& image, int x, int y, const std::string& text, int size, c
     return false;
 }
 
+ColorTable table_of(const std::string& name)
+{
+    constexpr int count = 256;
+    OIIO::ImageBuf ramp(OIIO::ImageSpec(count, 1, 1, OIIO::TypeFloat));
+    for (int i = 0; i < count; ++i) {
+        const float value = static_cast<float>(i) / (count - 1);
+        ramp.setpixel(i, 0, &value, 1);
+    }
+    const OIIO::ImageBuf colors = OIIO::ImageBufAlgo::color_map(ramp, 0, name);
+    if (colors.has_error()) {
+        throw std::runtime_error("no colour map " + name + ": " + colors.geterror());
+    }
+    ColorTable table;
+    for (int i = 0; i < count; ++i) {
+        float c[3] = {};
+        colors.getpixel(i, 0, c, 3);
+        table.emplace_back(c[0], c[1], c[2]);
+    }
+    return table;
+}
+
 }  // namespace
 
-const ImageFileModule patchlight_image_file_module{
-    .encode_png = &png_of, .encode_exr = &exr_of, .read_image = &image_in, .draw_text = &write_text};
+const ImageFileModule patchlight_image_file_module{.encode_png = &png_of,
+                                                   .encode_exr = &exr_of,
+                                                   .read_image = &image_in,
+                                                   .draw_text = &write_text,
+                                                   .color_table = &table_of};
 
 }  // namespace patchlight
