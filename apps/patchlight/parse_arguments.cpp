@@ -103,7 +103,8 @@ struct Parser {
                              "print the version and stop");
         app.set_help_flag("-h,--help", "print this and stop");
         app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 bad scene, 4 not converged or a\n"
-                   "bound missed, 5 over a limit, 6 output could not be written, 130/143 interrupted.");
+                   "bound missed, 5 over a limit, 6 output could not be written, 130 or 143\n"
+                   "interrupted.");
         add_demo();
         add_inspect();
         add_solve();

@@ -28,7 +28,8 @@ void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
                "solver's. Intervals are of 95 %; the paths' own noise is not counted as error.\n"
                "L2 is relative to the reflected light of all surface; RMS to that of each point,\n"
                "where it is at least a thousandth of the mean.\n"
-               "The estimate holds when it is between half the measured error and three times it.");
+               "The estimate holds when it is between half the measured error and three times\n"
+               "that.");
 }
 
 void finish_verify(VerifyCommand& c, const std::string& cycle)
