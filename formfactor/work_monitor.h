@@ -25,6 +25,7 @@ struct WorkState {
     double fraction = 0;   ///< done, 0 … 1
     std::size_t rays = 0;  ///< traced so far
     double unshot = -1;    ///< share of the emitted power not yet shot; -1 = does not apply
+    double residual = -1;  ///< of the linear system, as the solver measures it; -1 = does not apply
 };
 
 /// Who watches a long loop, and who may stop it.
@@ -33,6 +34,16 @@ struct WorkMonitor {
     /// Called from one thread at a time.
     std::function<void(const WorkState&)> tell;
 };
+
+/// The watcher of one part of a longer work: what the part tells as 0 … 1 is told as begin … end.
+inline WorkMonitor part_of(const WorkMonitor& whole, double begin, double end)
+{
+    if (!whole.tell) return whole;
+    return {whole.stop, [tell = whole.tell, begin, end](WorkState state) {
+                state.fraction = begin + (end - begin) * state.fraction;
+                tell(state);
+            }};
+}
 
 /// Calls work(i, scratch) for every i in [0, n) on all threads, with one Scratch a thread, in blocks.
 /// Whatever work(i) writes must depend on i alone: then the result doesn't depend on the number of threads.
@@ -49,10 +60,12 @@ std::size_t for_each_row(std::size_t n, const WorkMonitor& monitor, const Work& 
         Scratch& scratch = scratches.local();
         const std::size_t before = scratch.traced;
         for (std::size_t i = b * block; i < std::min(n, (b + 1) * block); ++i) work(i, scratch);
-        const std::size_t now = ++done, traced = rays += scratch.traced - before;
+        rays += scratch.traced - before;
+        ++done;
         if (!monitor.tell) return;
+        // Read under the lock: what is told never falls.
         if (const std::unique_lock lock(telling, std::try_to_lock); lock.owns_lock())
-            monitor.tell({static_cast<double>(now) / static_cast<double>(blocks), traced});
+            monitor.tell({.fraction = static_cast<double>(done) / static_cast<double>(blocks), .rays = rays});
     });
     if (monitor.stop.stop_requested()) throw Interrupted();
     return rays;

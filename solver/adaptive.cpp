@@ -29,14 +29,9 @@ public:
     {
         if (observers_.stop.stop_requested()) throw Interrupted();
         WorkMonitor monitor{observers_.stop, {}};
-        Progress progress{name, cycle, 0, elements};
-        if (observers_.on_progress)
-            monitor.tell = [this, progress](const WorkState& state) mutable {
-                progress.fraction = state.fraction;
-                progress.rays = state.rays;
-                progress.unshot = state.unshot;
-                observers_.on_progress(progress);
-            };
+        progress_ = {name, cycle, 0, elements};
+        rays_of_loop_ = 0;
+        if (observers_.on_progress) monitor.tell = [this](const WorkState& state) { tell(state); };
         if (monitor.tell) monitor.tell({});
         const auto begin = Clock::now();
         auto result = work(monitor);
@@ -48,7 +43,20 @@ public:
     StageSeconds seconds;
 
 private:
+    /// A stage may be several loops, each of which counts its own rays.
+    void tell(const WorkState& state)
+    {
+        progress_.fraction = std::max(progress_.fraction, state.fraction);
+        progress_.rays += state.rays < rays_of_loop_ ? state.rays : state.rays - rays_of_loop_;
+        rays_of_loop_ = state.rays;
+        progress_.unshot = state.unshot;
+        progress_.residual = state.residual;
+        observers_.on_progress(progress_);
+    }
+
     const AdaptiveObservers& observers_;
+    Progress progress_;
+    std::size_t rays_of_loop_ = 0;
 };
 
 /// The uniform mesh to begin with. An automatic one leaves three quarters of the budget to refinement.

@@ -90,7 +90,8 @@ public:
         std::vector<std::uint32_t> fresh;
         const std::vector<std::uint32_t> indices = add(points, fresh, monitor);
         for (auto& irradiance : irradiance_) irradiance.resize(known_.size());
-        return {rows_[0].irradiance(indices, leaving, monitor), rows_[1].irradiance(indices, leaving, monitor), 0};
+        return {rows_[0].irradiance(indices, leaving, part_of(monitor, 0, 0.5)),
+                rows_[1].irradiance(indices, leaving, part_of(monitor, 0.5, 1)), 0};
     }
 
     std::size_t rays() const { return rows_[0].rays() + rows_[1].rays(); }
@@ -132,7 +133,8 @@ private:
             unknown.push_back(point);
             fresh.push_back(next);
         }
-        for (HitRows& rows : rows_) rows.add(unknown, monitor);
+        rows_[0].add(unknown, part_of(monitor, 0, 0.5));
+        rows_[1].add(unknown, part_of(monitor, 0.5, 1));
         return indices;
     }
 
@@ -276,15 +278,23 @@ IndirectLight refined_for(const RoughSolution& rough, const LightCarrier& carrie
     const MeshingOptions budget{.max_elements = options.max_elements / 2};
     auto shared = std::make_shared<const PatchMesh>(coarse_mesh(scene, options.max_elements));
     QuadraticRadiosity leaving = carrier.leaving(light);
+    // Nodes cost alike; they end at the budget or, the error falling like 1/n, where it is small enough.
+    const double most = 0.95 * static_cast<double>(budget.max_elements);
+    double done = 0, needed = most;
     for (int cycle = 0;; ++cycle) {
         const PatchMesh& mesh = *shared;
+        const auto n = static_cast<double>(mesh.patch_count());
+        const double next = std::max(done, std::min(1.0, n / std::min(most, needed)));
         const PatchLocator locator(mesh);
         const Exchange exchange{scene, start.caster, mesh, locator, start.direct};
         GatheredLight found;
         const LightAtPoints at_nodes = [&](std::span<const SurfacePoint> points, const WorkMonitor& m) {
             return found = gathered.at(points, leaving, m);
         };
-        const ErrorEstimate error = evaluate(exchange, at_nodes, Indicator::middles, 0, 0, monitor).error;
+        const ErrorEstimate error =
+            evaluate(exchange, at_nodes, Indicator::middles, 0, 0, part_of(monitor, done, next)).error;
+        done = next;
+        needed = n * error.total / enough;
         light = light_on(shared, element_points(exchange), mean_of_both(found));
         leaving = carrier.leaving(light);
         const ErrorEstimate counted =
@@ -308,14 +318,15 @@ IndirectLight swept(const Exchange& start, const LightCarrier& carrier, Gathered
     GatheredLight found;
     // What isn't kept would be traced again each time.
     const int sweeps = gathered.keeps_all() ? 2 : 1;
+    const double share = 1.0 / (sweeps + 1);
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         leaving = carrier.leaving(light);
-        found = gathered.anew(nodes.points, leaving, monitor);
+        found = gathered.anew(nodes.points, leaving, part_of(monitor, sweep * share, (sweep + 1) * share));
         light = light_on(mesh, nodes, mean_of_both(found));
     }
     light.noise = noise_of(scene, nodes.points, vertex_areas(scene, *mesh), found);
-    light.mesh_error =
-        interpolation_error(scene, mesh, nodes, found, probes, gathered.anew(probes.points, leaving, monitor));
+    light.mesh_error = interpolation_error(scene, mesh, nodes, found, probes,
+                                           gathered.anew(probes.points, leaving, part_of(monitor, 1 - share, 1)));
     return light;
 }
 
@@ -343,11 +354,14 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
 {
     const Exchange& start = rough.exchange;
     const Scene& scene = start.scene;
+    // Shares of the time, as measured on rooms.
+    const WorkMonitor beginning = part_of(monitor, 0, 0.12), refining = part_of(monitor, 0.12, 0.88),
+                      sweeping = part_of(monitor, 0.88, 1);
     IndirectLight light(std::make_shared<const PatchMesh>(scene, start.mesh.arrays()),
-                        around_vertices(start.mesh, indirect_irradiance(rough, emitted, options.gather, monitor)));
+                        around_vertices(start.mesh, indirect_irradiance(rough, emitted, options.gather, beginning)));
     const LightCarrier carrier(start, emitted, light,
                                {options.target_error / 2, options.max_elements / 2, options.gather, options.mark},
-                               monitor);
+                               beginning);
     // Without a target: about as good as the mesh will be in the end, with twice the carrier's elements.
     const double target = options.target_error > 0 ? options.target_error : 1.5 * carrier.error();
     const QuadraticRadiosity leaving = carrier.leaving(light);
@@ -355,7 +369,7 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
     const Probes probes = spread_probes(scene, start.mesh, 512, options.gather.seed);
     std::size_t rays = 0;
     int vertex_rays = std::max(options.rays, fewest_rays);
-    if (options.rays == 0 && goal > 0) vertex_rays = rays_for(goal, carrier, leaving, probes, options, rays, monitor);
+    if (options.rays == 0 && goal > 0) vertex_rays = rays_for(goal, carrier, leaving, probes, options, rays, beginning);
     // Few rays miss what is small and bright, and don't know it.
     if (options.rays == 0 && options.target_error == 0) vertex_rays = std::max(vertex_rays, 512);
 
@@ -363,8 +377,8 @@ IndirectLight solve_indirect(const RoughSolution& rough, const EmittedLight& emi
                       {.rays = vertex_rays / 2, .directions = options.directions, .seed = options.gather.seed});
     // What quadratic elements miss is a third of what linear ones do, or less.
     const double enough = (options.target_error > 0 ? 3 : 2) * goal;
-    light = refined_for(rough, carrier, gathered, std::move(light), enough, options, monitor);
-    light = swept(start, carrier, gathered, std::move(light), probes, monitor);
+    light = refined_for(rough, carrier, gathered, std::move(light), enough, options, refining);
+    light = swept(start, carrier, gathered, std::move(light), probes, sweeping);
     light.rays = rays + gathered.rays();
     light.vertex_rays = vertex_rays;
     return light;

@@ -12,10 +12,11 @@ namespace patchlight {
 struct Progress {
     std::string_view stage;  ///< direct, lines, assemble, solve, importance, indirect, estimate, gather, mesh
     int cycle = 0;           ///< -1 = there are none
-    double fraction = 0;     ///< of this stage, 0 … 1
+    double fraction = 0;     ///< of this stage, 0 … 1; never falls
     std::size_t elements = 0;
     std::size_t rays = 0;  ///< traced so far in this stage
     double unshot = -1;    ///< share of the emitted power not yet shot; -1 = does not apply
+    double residual = -1;  ///< of the linear solve; -1 = does not apply
 };
 
 /// Called from one thread at a time, some times a second.

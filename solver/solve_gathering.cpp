@@ -63,7 +63,9 @@ SolveReport solve_gathering(const RadiositySystem& system, Radiosity& B, const S
         report.history.push_back(report.residual);
         report.converged = report.residual <= options.tolerance;
         // The logarithm of the way down is about linear in sweeps.
-        if (monitor.tell) monitor.tell({std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0)});
+        if (monitor.tell)
+            monitor.tell({.fraction = std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0),
+                          .residual = report.residual});
     }
     return report;
 }

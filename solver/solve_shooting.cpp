@@ -111,8 +111,9 @@ SolveReport solve_shooting(const RadiositySystem& system, const ColumnSource& co
         ++report.iterations;
         if (on_shot) on_shot(report, B);
         if (monitor.tell)
-            monitor.tell({std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0), report.rays,
-                          report.unshot});
+            monitor.tell({.fraction = std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0),
+                          .rays = report.rays,
+                          .unshot = report.unshot});
     }
     if (options.ambient) {
         const Rgb ambient = unshot.ambient();

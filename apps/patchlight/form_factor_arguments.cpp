@@ -191,8 +191,9 @@ void add_form_factors(CLI::App& app, FormFactorsCommand& c, FormFactorTexts& t)
     add_machine(app, c.threads, c.quiet, c.json, "print JSON instead of a summary");
     app.footer("F is the fraction of the power leaving a row's patch that reaches a column's.\n"
                "FILE.csv: row,column,factor, patches counted from 0.\n"
-               "FILE.bin, little-endian: \"PLFFCSR1\", uint64 n, uint64 entries, uint64 row_start[n+1],\n"
-               "uint32 columns[entries], float64 factors[entries], float64 area[n] in m2.");
+               "FILE.bin, little-endian: \"PLFFCSR1\", uint64 n, uint64 entries,\n"
+               "uint64 row_start[n+1], uint32 columns[entries], float64 factors[entries],\n"
+               "float64 area[n] in m2.");
 }
 
 void finish_form_factors(FormFactorsCommand& c, const FormFactorTexts& t)

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <pthread.h>
 #include <unistd.h>
+#include <utility>
 
 namespace patchlight {
 
@@ -23,7 +24,7 @@ bool ignored(int signal)
 
 }  // namespace
 
-Interruption::Interruption()
+Interruption::Interruption(std::function<void()> farewell) : farewell_(std::move(farewell))
 {
     // A closed pipe and a file that grows too long are errors of the write, and reported there.
     std::signal(SIGPIPE, SIG_IGN);
@@ -79,6 +80,7 @@ void Interruption::leave()
     if (last_words_) {
         last_words_();
     }
+    farewell_();
     _exit(exit_code());
 }
 

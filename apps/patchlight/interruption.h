@@ -14,7 +14,8 @@ namespace patchlight {
 /// signals for all that follow.
 class Interruption {
 public:
-    Interruption();
+    /// `farewell` is called last when the program doesn't end by itself in time, from another thread.
+    explicit Interruption(std::function<void()> farewell);
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
     ~Interruption();
@@ -34,7 +35,7 @@ private:
 
     std::stop_source stop_;
     std::mutex mutex_;
-    std::function<void()> last_words_;
+    std::function<void()> last_words_, farewell_;
     sigset_t signals_{};
     std::atomic<int> signal_ = 0;
     std::atomic<bool> done_ = false;

@@ -64,7 +64,7 @@ int main(int argc, char** argv)
 {
     patchlight::keep_standard_descriptors();
     patchlight::Messages messages;
-    patchlight::Interruption interruption;
+    patchlight::Interruption interruption([&] { messages.close_status(); });
     patchlight::FileWriter writer;
     patchlight::Session session{messages, interruption, writer};
     return patchlight::run_and_report(argc, argv, session);

@@ -1,34 +1,45 @@
 #pragma once
 
+#include "apps/patchlight/progress_text.h"
 #include "apps/patchlight/terminal.h"
 #include "solver/progress.h"
 
 #include <chrono>
-#include <map>
-#include <string>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
 
 namespace patchlight {
 
-/// Shows where a solve stands: a bar that is redrawn on a terminal, nothing between the cycles' lines elsewhere.
+/// Shows where a long work stands: a bar below the messages on a terminal, ten times a second at most; nothing
+/// elsewhere. The bar goes when the display does.
 class ProgressDisplay {
 public:
     explicit ProgressDisplay(const Messages& messages);
     ~ProgressDisplay();
+    ProgressDisplay(const ProgressDisplay&) = delete;
+    ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
     void show(const Progress& progress);
-    /// A line that stays, above the bar.
-    void line(const std::string& text);
+    /// No bar until something is shown again.
     void clear();
 
 private:
     using Clock = std::chrono::steady_clock;
 
+    void draw_until(const std::stop_token& stop);
+    ProgressText text_now();
+
     const Messages& messages_;
-    bool drawn_ = false;
-    std::string stage_;
-    int cycle_ = -2;
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    std::optional<ProgressText> shown_;
+    TimeLeft left_;
     Clock::time_point stage_start_{};
-    Clock::time_point drawn_at_{};
+    std::size_t rays_ = 0;
+    std::jthread drawer_;  ///< last: it uses all of the above
 };
 
 }  // namespace patchlight

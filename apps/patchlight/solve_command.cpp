@@ -1,4 +1,5 @@
 #include "apps/imaging/view_rays.h"
+#include "apps/patchlight/before_after_table.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
 #include "apps/patchlight/scene_input.h"
@@ -63,14 +64,12 @@ std::string summary_of(const RunFolder& folder)
     const RunIdentity& id = record.identity;
     std::string out = fmt::format("scene   {}: {} surfaces, {:.6g} m2, {}\n", id.scene_file, id.surfaces, id.area,
                                   id.closed ? "closed" : "open");
-    for (const CycleRecord& c : record.cycles) {
-        out += fmt::format("cycle   {:>2} {:<8} {:>8} elements, estimated error {:.3g} %\n", c.cycle,
-                           name_of(stage_names(), c.stage), c.elements, 100 * c.estimated_error);
-    }
+    const Json timing = folder.timing();
+    out += fmt::format("\n{}\n", before_after_table(record, timing));
     if (!record.cycles.empty()) {
         const EnergyBalance& e = record.cycles.back().energy;
-        out += fmt::format("energy  emitted {:.6g} W, absorbed {:.6g} W, escaped {:.6g} W, rest {:.2g}\n", e.emitted,
-                           e.absorbed, e.escaped, e.relative_residual);
+        out += fmt::format("energy  emitted {:.6g} W, absorbed {:.6g} W, escaped {:.6g} W, rest {:.2g} %\n", e.emitted,
+                           e.absorbed, e.escaped, 100 * e.relative_residual);
     }
     std::error_code error;
     for (const char* name : {"before.png", "after.png", "compare.png", "mesh-before.png", "mesh-after.png", "view.exr",
@@ -79,7 +78,6 @@ std::string summary_of(const RunFolder& folder)
             out += fmt::format("wrote   {}\n", (folder.path() / name).string());
         }
     }
-    const Json timing = folder.timing();
     if (timing.is_object() && timing.contains("seconds") && timing["seconds"].contains("total")) {
         out += fmt::format("seconds {:.1f}\n", timing["seconds"]["total"].get<double>());
     }

@@ -164,7 +164,7 @@ void SolveRun::on_step(const AdaptiveStep& step)
     }
     record.exposure = exposure_;
     folder_.finish_cycle(record, seconds_of(step));
-    display_.line(line_of(record, step.seconds));
+    session_.messages.note(line_of(record, step.seconds));
 }
 
 void SolveRun::write_results()

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -50,10 +52,11 @@ std::string harmless(std::string_view text)
 
 }  // namespace
 
-Messages::Messages(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1)
+Messages::Messages(bool quiet) : quiet_(quiet)
 {
     const char* term = std::getenv("TERM");
-    color_ = terminal_ && !is_set("NO_COLOR") && (term == nullptr || std::string_view(term) != "dumb");
+    terminal_ = ::isatty(STDERR_FILENO) == 1 && (term == nullptr || std::string_view(term) != "dumb");
+    color_ = terminal_ && !is_set("NO_COLOR");
 }
 
 std::string Messages::colored(const char* color, std::string_view text) const
@@ -63,24 +66,63 @@ std::string Messages::colored(const char* color, std::string_view text) const
 
 void Messages::error(std::string_view code, std::string_view text) const
 {
-    raw(fmt::format("{}: {}\n", colored("1;31", fmt::format("error[{}]", code)), harmless(text)));
+    say(fmt::format("{}: {}\n", colored("1;31", fmt::format("error[{}]", code)), harmless(text)));
 }
 
 void Messages::warning(std::string_view text) const
 {
-    raw(fmt::format("{}: {}\n", colored("1;33", "warning"), harmless(text)));
+    say(fmt::format("{}: {}\n", colored("1;33", "warning"), harmless(text)));
 }
 
 void Messages::note(std::string_view text) const
 {
     if (!quiet_) {
-        raw(harmless(text) + "\n");
+        say(harmless(text) + "\n");
     }
 }
 
-void Messages::raw(std::string_view text) const
+void Messages::status(std::string_view text) const
 {
-    (void)write_all(STDERR_FILENO, text);
+    const std::lock_guard lock(writing_);
+    if (closed_ || (text.empty() && !has_status_)) {
+        return;
+    }
+    (void)write_all(STDERR_FILENO, erased() + std::string(text));
+    has_status_ = !text.empty();
+}
+
+void Messages::close_status() const
+{
+    const std::unique_lock lock(writing_, std::chrono::milliseconds(50));
+    if (lock.owns_lock()) {
+        (void)write_all(STDERR_FILENO, erased());
+        has_status_ = false;
+        closed_ = true;
+    }
+}
+
+void Messages::say(std::string_view text) const
+{
+    const std::lock_guard lock(writing_);
+    (void)write_all(STDERR_FILENO, erased() + std::string(text));
+    has_status_ = false;
+}
+
+/// In one write with what follows: nothing flickers.
+std::string Messages::erased() const
+{
+    return has_status_ ? "\r\x1b[2K" : "";
+}
+
+int terminal_columns()
+{
+    winsize size{};
+    if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+        return size.ws_col;
+    }
+    const char* columns = std::getenv("COLUMNS");
+    const int told = columns == nullptr ? 0 : std::atoi(columns);
+    return told > 0 ? told : 80;
 }
 
 void keep_standard_descriptors()

@@ -24,10 +24,12 @@ void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
         ->type_name("N")
         ->capture_default_str();
     add_machine(app, c.threads, c.quiet, c.json, "print JSON instead of a summary");
-    app.footer("Paths are traced against the scene's polygons alone, with nothing of the solver's. Intervals are of\n"
-               "95 %; the paths' own noise is not counted as error. L2 is relative to the reflected light of all\n"
-               "surface; RMS to that of each point, where it is at least a thousandth of the mean.\n"
-               "The estimate holds when it is between half the measured error and three times it.");
+    app.footer("Paths are traced against the scene's polygons alone, with nothing of the\n"
+               "solver's. Intervals are of 95 %; the paths' own noise is not counted as error.\n"
+               "L2 is relative to the reflected light of all surface; RMS to that of each point,\n"
+               "where it is at least a thousandth of the mean.\n"
+               "The estimate holds when it is between half the measured error and three times\n"
+               "that.");
 }
 
 void finish_verify(VerifyCommand& c, const std::string& cycle)

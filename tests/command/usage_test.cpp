@@ -31,8 +31,8 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 {
     const Outcome help = run({"solve", "--help"});
     EXPECT_EQ(help.code, 0);
-    for (const char* shown : {"--refine", "=both", "--direct", "=exact", "--solver", "=gauss-seidel", "=hemisphere",
-                              "=8000", "=residual", "=doerfler", "=0.95", "=0.0001", "--unit", "=m"}) {
+    for (const char* shown : {"--refine", "[both]", "--direct", "[exact]", "--solver", "[gauss-seidel]", "[hemisphere]",
+                              "[8000]", "[residual]", "[doerfler]", "[0.95]", "[0.0001]", "--unit", "[m]"}) {
         EXPECT_THAT(help.out, HasSubstr(shown));
     }
 }
@@ -41,22 +41,24 @@ TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 {
     for (const char* command : {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export",
                                 "report", "formfactors", "validate"}) {
-        std::istringstream lines(run({command, "--help"}).out);
-        for (std::string line, next; std::getline(lines, line);) {
-            // An option's first word, its values and its text: with a default, or required, or with [what is done
-            // without].
-            if (!line.starts_with("  --") && !line.starts_with("  -o")) {
-                continue;
+        // An option's lines: its name and value, and indented its text, which ends with what is done without it.
+        const std::string help = run({command, "--help"}).out;
+        std::istringstream lines(help.substr(help.find("\nOptions:\n") + 10));
+        std::string option;
+        const auto check = [&] {
+            EXPECT_TRUE(option.empty() || option.starts_with("  -h") || option.find('[') != std::string::npos ||
+                        option.find("(required)") != std::string::npos)
+                << command << ": " << option;
+        };
+        for (std::string line; std::getline(lines, line) && !line.empty();) {
+            if (line.starts_with("  -")) {
+                check();
+                option.clear();
             }
-            const auto says = [](const std::string& text) {
-                return text.find('[') != std::string::npos || text.find('=') != std::string::npos ||
-                       text.find("REQUIRED") != std::string::npos;
-            };
-            if (!says(line)) {
-                std::getline(lines, next);
-                EXPECT_TRUE(says(next) || line.starts_with("  --version")) << command << ": " << line << next;
-            }
+            option += line + "\n";
         }
+        EXPECT_NE(option, "");
+        check();
     }
 }
 

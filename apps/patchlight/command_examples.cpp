@@ -1,0 +1,38 @@
+#include "apps/patchlight/command_examples.h"
+
+namespace patchlight {
+
+const std::vector<CommandExamples>& command_examples()
+{
+    static const std::vector<CommandExamples> all{
+        {"", "", {"demo", "solve data/scenes/furniture-room.obj -o room"}},
+        {"demo", "Solve", {"demo -o patchlight-demo"}},
+        {"inspect",
+         "Solve",
+         {"inspect data/scenes/gallery.obj", "inspect data/scenes/cornell-box.obj --unit mm --lines"}},
+        {"solve",
+         "Solve",
+         {"solve data/scenes/cornell-box.obj --unit mm -o box --max-elements 3000",
+          "solve data/scenes/furniture-room.obj -o room --target-error 0.05"}},
+        {"render",
+         "Look",
+         {"render box -o mesh.png --wireframe",
+          "render box -o above.png --from 278,500,-200 --to 278,100,300 --fov 60"}},
+        {"compare", "Look", {"compare box@first box -o compared --points 1000"}},
+        {"animate", "Look", {"animate box -o cycles.png"}},
+        {"report", "Look", {"report box -o box.html"}},
+        {"probe", "Look", {"probe box --points data/points/cornell-box-floor.csv"}},
+        {"export", "Look", {"export box --format ply -o box.ply", "export box --format pvd -o box.pvd"}},
+        {"verify", "Check", {"verify box --points 200 --paths 256"}},
+        {"formfactors",
+         "Check",
+         {"formfactors data/scenes/cornell-box.obj --unit mm --between light floor",
+          "formfactors data/scenes/furnace.obj --max-elements 300 -o factors.csv"}},
+        {"validate", "Check", {"validate --method closed-form"}},
+        {"completion", "Shell", {"completion bash > patchlight.bash"}},
+        {"man", "Shell", {"man > patchlight.1"}},
+    };
+    return all;
+}
+
+}  // namespace patchlight
