@@ -2,11 +2,11 @@ import { element, number, table, whole } from './numbers.js';
 
 const bands = ['red', 'green', 'blue'];
 
-/// What one view says about a patch, by row; null when nothing was hit.
+/// What one view says about a patch, by row. `shot`: the progressive solution at the vertices, or nothing.
 function facts(cycle, patch, scene, shot) {
   const surface = cycle.patchSurface[patch];
   const digits = cycle.exact ? 6 : 3;
-  const light = shot ?? [0, 1, 2].map((k) => cycle.patchLight[3 * patch + k]);
+  const light = [0, 1, 2].map((k) => (shot ? cycle.meanOfCorners(shot, patch, k) : cycle.patchLight[3 * patch + k]));
   const lux = shot ? null : cycle.patchLux(patch);
   const eta = cycle.eta[patch];
   return new Map([
