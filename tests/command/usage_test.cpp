@@ -62,7 +62,7 @@ TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 
 TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
 {
-    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "verify", "export"}) {
+    for (const char* command : {"demo", "inspect", "solve", "render", "probe", "verify", "export", "report"}) {
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
