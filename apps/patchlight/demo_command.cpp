@@ -49,6 +49,7 @@ int run_command(const DemoCommand& command, Session& session)
     solve.scene.options.unit = 0.001;
     solve.run = command.folder;
     solve.options.max_elements = demo_elements;
+    solve.pictures.snapshots = {1, 2, 3, 16};  // for the report's slider
     solve.quiet = command.quiet;
     solve.json = command.json;
     solve.threads = command.threads;

@@ -58,7 +58,8 @@ Json cycle_json(int cycle, const StoredSolution& s, bool exact, ReportPayload& p
     for (const auto& t : s.mesh.arrays().triangles) corners.insert(corners.end(), t.begin(), t.end());
     Json out = {{"cycle", cycle},
                 {"exact", exact},
-                {"positions", payload.floats(floats_of(s.mesh.arrays().positions))},
+                {"positions", exact ? payload.floats(floats_of(s.mesh.arrays().positions))
+                                    : payload.rounded_points(s.mesh.arrays().positions)},
                 {"corners", payload.indices(corners)},
                 {"vertex_light", numbers(floats_of(s.vertex_B.values()))},
                 {"patch_light", numbers(floats_of(s.B.values()))},
@@ -72,7 +73,7 @@ Json cycle_json(int cycle, const StoredSolution& s, bool exact, ReportPayload& p
 std::size_t bytes_of(const CycleRecord& record, bool exact)
 {
     const std::size_t index = record.vertices > 0x10000U ? 4 : 2, number = exact ? 4 : 2;
-    return record.vertices * (12 + 3 * number) + record.elements * (3 * index + 4 * number + (exact ? 4 : 0));
+    return record.vertices * 6 * number + record.elements * (3 * index + 4 * number + (exact ? 4 : 0));
 }
 
 Json scene_json(const Scene& scene, ReportPayload& payload)

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace patchlight {
@@ -30,23 +31,14 @@ std::string policy_hash(std::string_view bytes)
     return "'sha256-" + base64(digest) + "'";
 }
 
-}  // namespace
-
-ReportPage report_page(const OpenedRun& run, const ReportOptions& options)
+std::string html_of(const OpenedRun& run, const ReportData& data)
 {
-    record_of(run, {});  // Throws without a finished cycle.
     const std::string_view script = page_file("page.js"), style = page_file("page.css"), body = page_file("page.html");
-    // Three bytes become four characters; the description is short beside the rest.
-    constexpr std::size_t description_bytes = 60'000;
-    const std::size_t fixed = script.size() + style.size() + body.size() + description_bytes;
-    const ReportData data = report_data(run, (options.most_bytes - std::min(options.most_bytes, fixed)) / 4 * 3);
     const std::string policy =
         fmt::format("default-src 'none'; script-src {}; style-src {}; img-src data: blob:; base-uri 'none'; "
                     "form-action 'none'",
                     policy_hash(script), policy_hash(style));
-    ReportPage page;
-    page.cycles = data.cycles;
-    page.html = fmt::format(R"(<!doctype html>
+    return fmt::format(R"(<!doctype html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -66,9 +58,24 @@ ReportPage report_page(const OpenedRun& run, const ReportOptions& options)
 </body>
 </html>
 )",
-                            policy, html_text(tool_version()), html_text(as_utf8(run.record.identity.scene_file)),
-                            style, body, script_json(data.description), base64(data.payload.bytes()), script);
-    return page;
+                       policy, html_text(tool_version()), html_text(as_utf8(run.record.identity.scene_file)), style,
+                       body, script_json(data.description), base64(data.payload.bytes()), script);
+}
+
+}  // namespace
+
+ReportPage report_page(const OpenedRun& run, const ReportOptions& options)
+{
+    record_of(run, {});  // Throws without a finished cycle.
+    // Three bytes become four characters; the script is most of the rest.
+    const std::size_t fixed = page_file("page.js").size();
+    std::size_t room = (options.most_bytes - std::min(options.most_bytes, fixed)) / 4 * 3;
+    for (;;) {
+        const ReportData data = report_data(run, room);
+        ReportPage page{html_of(run, data), data.cycles};
+        if (page.html.size() <= options.most_bytes || page.cycles.size() <= 2) return page;
+        room -= std::min(room, page.html.size() - options.most_bytes);
+    }
 }
 
 }  // namespace patchlight

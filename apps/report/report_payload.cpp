@@ -3,6 +3,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace patchlight {
 
@@ -27,6 +28,26 @@ Json ReportPayload::halves(std::span<const float> values)
     for (const float value : values) packed.push_back(largest > 0 ? glm::packHalf1x16(value / largest) : 0);
     Json place = add(packed.data(), packed.size() * sizeof(std::uint16_t), packed.size(), "float16");
     place["scale"] = largest;
+    return place;
+}
+
+Json ReportPayload::rounded_points(std::span<const Vec3> points)
+{
+    Vec3 low(points.empty() ? Vec3(0.0) : points.front()), high = low;
+    for (const Vec3& p : points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const Vec3 size = high - low;
+    std::vector<std::uint16_t> packed;
+    packed.reserve(points.size() * 3);
+    for (const Vec3& p : points)
+        for (int k = 0; k < 3; ++k)
+            packed.push_back(size[k] > 0 ? static_cast<std::uint16_t>(std::lround((p[k] - low[k]) / size[k] * 65535))
+                                         : 0);
+    Json place = add(packed.data(), packed.size() * sizeof(std::uint16_t), packed.size(), "unorm16");
+    place["low"] = {low.x, low.y, low.z};
+    place["size"] = {size.x, size.y, size.z};
     return place;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/run/run_options.h"
+#include "meshing/vectors.h"
 
 #include <cstdint>
 #include <span>
@@ -18,6 +19,9 @@ public:
     /// In 16 bits a number, as parts of the largest, which is added as `scale`: relative precision 1/2048 down to
     /// 6e-5 of it, smaller than 3e-8 of it is 0. Numbers must be finite and not negative.
     Json halves(std::span<const float> values);
+    /// Points in 16 bits a coordinate, as parts of their bounding box, whose `low` and `size` are added: exact to half
+    /// of a 65535th of each side.
+    Json rounded_points(std::span<const Vec3> points);
     Json integers(std::span<const std::uint32_t> values);
     /// As integers(), in 16 bits where all fit, else in 32.
     Json indices(std::span<const std::uint32_t> values);

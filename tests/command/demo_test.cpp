@@ -20,6 +20,7 @@ TEST_F(DemoTest, NeedsNothingBesideTheProgramAndCanBeRunAgain)
     const std::filesystem::path demo = folder_ / "patchlight-demo";
     EXPECT_EQ(text_of(demo / "scene/cornell-box.obj"), text_of(PATCHLIGHT_DATA "/scenes/cornell-box.obj"));
     const auto files = files_in(demo);
+    EXPECT_LE(files.at("report.html").size(), 3'000'000U) << "opens at once, and can be sent by mail";
     EXPECT_EQ(run({"demo"}, {.folder = folder_}).code, 0);
     EXPECT_EQ(files_in(demo), files);
 

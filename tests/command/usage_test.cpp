@@ -65,7 +65,7 @@ TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
 {
     for (const char* command :
-         {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export"}) {
+         {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export", "report"}) {
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");

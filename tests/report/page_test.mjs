@@ -121,8 +121,8 @@ async function tryCamera(page) {
 }
 
 /// The panel's values of one column, by row.
-const panel = (page, column) => page.locator('#patch tbody tr').evaluateAll((rows, at) => Object.fromEntries(
-  rows.map((row) => [row.cells[0].textContent, { text: row.cells[at].textContent, exact: Number(row.cells[at].dataset.exact) }])), column);
+const panel = (page, column) => page.locator('#patch tbody tr').evaluateAll((rows, at) => Object.fromEntries(rows.map(({ cells }) => [
+  cells[0].textContent, { text: cells[at].textContent, exact: Number(cells[at].dataset.exact) }])), column);
 
 /// The patch in the middle of both views, against the stored solutions.
 async function expectPickEqualsSolution(page, ask) {

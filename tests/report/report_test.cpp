@@ -60,6 +60,20 @@ TEST(ReportPayloadTest, HalvesArePartsOfTheLargest)
     EXPECT_EQ(payload.halves({})["count"], 0);
 }
 
+TEST(ReportPayloadTest, RoundedPointsArePartsOfTheirBox)
+{
+    // A flat box has no size in z.
+    ReportPayload payload;
+    const std::vector<Vec3> points{{-1, 5, 2}, {1, 9, 2}, {0, 6, 2}};
+    const Json place = payload.rounded_points(points);
+    EXPECT_EQ(place["low"], Json({-1.0, 5.0, 2.0}));
+    EXPECT_EQ(place["size"], Json({2.0, 4.0, 0.0}));
+    std::uint16_t words[9];
+    std::memcpy(words, payload.bytes().data(), sizeof words);
+    EXPECT_THAT(words, ElementsAre(0, 0, 0, 65535, 65535, 0, 32768, 16384, 0));
+    EXPECT_EQ(payload.rounded_points({})["count"], 0);
+}
+
 TEST(ReportDataTest, FirstAndLastCycleAreAlwaysChosenAndTheOthersEvenly)
 {
     const std::vector<std::size_t> nine(9, 10);

@@ -65,6 +65,13 @@ export class Cycle {
     return triangleArea(this.positions, a, b, c);
   }
 
+  /// Of values at the vertices, three bands each.
+  meanOfCorners(values, patch, band) {
+    let sum = 0;
+    for (let k = 0; k < 3; ++k) sum += values[3 * this.corners[3 * patch + k] + band];
+    return sum / 3;
+  }
+
   /// The value below which the share `part` of the area that doesn't emit has its own.
   percentile(part, valueOf) {
     const entries = [];

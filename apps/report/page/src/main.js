@@ -83,7 +83,8 @@ function showTexts(sides) {
   });
   byId('shots-out').textContent = sides[1].shot ? String(sides[1].shot.count) : 'off';
   byId('shots').setAttribute('aria-valuetext', byId('shots-out').textContent);
-  byId('exposure-out').textContent = `${Number(byId('exposure').value) < 0 ? '−' : '+'}${Math.abs(byId('exposure').value).toFixed(1)} stops`;
+  const stops = Number(byId('exposure').value);
+  byId('exposure-out').textContent = `${stops < 0 ? '−' : '+'}${Math.abs(stops).toFixed(1)} stops`;
   byId('wipe-out').textContent = `${byId('wipe').value} %`;
 }
 
@@ -106,14 +107,14 @@ function update(views) {
   showLayout();
   showLegend(quantity, range, logarithmic);
   if (!views) return;
+  const kinds = new Set(lineKinds.map((_, k) => k).filter((k) => byId(`kind-${k}`)?.checked));
+  const look = { shading: chosen('shading'), quantity, kinds, wire: byId('wire').checked };
   const { uniforms } = views.material;
   uniforms.scale.value = 2 ** (exposure + Number(byId('exposure').value)) / Math.PI;
   uniforms.mapped.value = quantity !== 'light';
   uniforms.logarithmic.value = logarithmic;
   uniforms.range.value = range;
-  uniforms.wire.value = byId('wire').checked;
-  const kinds = new Set(lineKinds.map((_, k) => k).filter((k) => byId(`kind-${k}`)?.checked));
-  const look = { shading: chosen('shading'), quantity, kinds };
+  uniforms.wire.value = look.wire;
   views.sides.forEach((side, i) => side.show(sides[i].cycle, look, sides[i].shot?.light));
   views.draw();
 }
@@ -147,14 +148,20 @@ function fillControls() {
   byId('kinds').hidden = byId('kinds').children.length < 2;
   const missing = run.cycles.length - cycles.length;
   const notes = [];
-  if (missing > 0) notes.push(`To keep this page small, ${missing} of the run's ${run.cycles.length} cycles are not in the 3-D views.`);
-  if (run.options.solve?.elements === 'quadratic') notes.push('The views draw these quadratic elements linear between their vertices.');
+  if (missing > 0) {
+    notes.push(`To keep this page small, ${missing} of the run's ${run.cycles.length} cycles are not in the 3-D views.`);
+  }
+  if (run.options.solve?.elements === 'quadratic') {
+    notes.push('The views draw these quadratic elements linear between their vertices.');
+  }
   byId('notice').textContent = notes.join(' ');
   byId('notice').hidden = notes.length === 0;
 }
 
 /// A camera for a run without any: the whole scene from its front.
-const anywhere = { name: '', from: [0, 0, 1.5 * scene.diameter], forward: [0, 0, -1], up: [0, 1, 0], vertical_fov: 40, aspect: 0 };
+const anywhere = {
+  name: '', from: [0, 0, 1.5 * scene.diameter], forward: [0, 0, -1], up: [0, 1, 0], vertical_fov: 40, aspect: 0,
+};
 
 function makeViews() {
   try {
@@ -162,24 +169,20 @@ function makeViews() {
       canvases: [byId('canvas-left'), byId('canvas-right')],
       scene,
       lineKinds,
+      smooth: last.count < 50_000,
       onPick: (patches) => showPatches(byId('patch'), sidesShown().map((side, i) => ({
         cycle: side.cycle,
         patch: patches[i],
-        shot: side.shot ? meanAt(side.shot.light, side.cycle, patches[i]) : null,
+        shot: side.shot?.light,
         title: titleOf(side, i),
       })), scene),
     });
   } catch (problem) {
-    byId('notice').textContent = `The 3-D views need WebGL, which this browser doesn't offer (${problem.message}). Everything else is here.`;
+    byId('notice').textContent = 'The 3-D views need WebGL, which this browser doesn’t offer '
+      + `(${problem.message}). Everything else is here.`;
     byId('notice').hidden = false;
     return null;
   }
-}
-
-function meanAt(light, cycle, patch) {
-  if (patch === null) return null;
-  const corners = cycle.corners.subarray(3 * patch, 3 * patch + 3);
-  return [0, 1, 2].map((band) => (light[3 * corners[0] + band] + light[3 * corners[1] + band] + light[3 * corners[2] + band]) / 3);
 }
 
 function start() {

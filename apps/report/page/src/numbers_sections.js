@@ -30,7 +30,8 @@ function showHead({ run, timing }) {
 
 function showCycles({ run, timing }) {
   const after = secondsAfter(timing);
-  const points = run.cycles.map((c) => ({ x: c.elements, error: c.estimated_error, uniform: c.stage !== 'adaptive' && c.stage !== 'final' }));
+  const uniform = (c) => c.stage !== 'adaptive' && c.stage !== 'final';
+  const points = run.cycles.map((c) => ({ x: c.elements, error: c.estimated_error, uniform: uniform(c) }));
   plot(byId('chart-elements'), 'elements', points);
   const timed = run.cycles.map((c, i) => ({ ...points[i], x: after.get(c.cycle) ?? 0 }));
   if (!plot(byId('chart-seconds'), 'seconds', timed)) byId('figure-seconds').hidden = true;
@@ -48,7 +49,8 @@ function showEnergy({ run }) {
 
 function showSource({ run, timing }) {
   const rows = [['Program', `${run.tool.name} ${run.tool.version} (${run.tool.commit})`], ['Scene file', run.scene.file],
-    ['SHA-256 of the file', run.scene.sha256], ['SHA-256 of what was read', run.scene.content_sha256], ['Seed', String(run.seed)]];
+    ['SHA-256 of the file', run.scene.sha256], ['SHA-256 of what was read', run.scene.content_sha256],
+    ['Seed', String(run.seed)]];
   if (timing?.threads) rows.push(['Threads', `${timing.threads}, ${timing.instruction_set ?? ''}`]);
   for (const warning of run.warnings ?? []) rows.push(['Warning', warning]);
   byId('source').append(table(rows));

@@ -1,23 +1,23 @@
+import { lux } from './cycles.js';
 import { element, number, table, whole } from './numbers.js';
 
 const bands = ['red', 'green', 'blue'];
 
-/// What one view says about a patch, by row; null when nothing was hit.
+/// What one view says about a patch, by row. `shot`: the progressive solution at the vertices, or nothing.
 function facts(cycle, patch, scene, shot) {
   const surface = cycle.patchSurface[patch];
   const digits = cycle.exact ? 6 : 3;
-  const light = shot ?? [0, 1, 2].map((k) => cycle.patchLight[3 * patch + k]);
-  const lux = shot ? null : cycle.patchLux(patch);
-  const eta = cycle.eta[patch];
+  const light = [0, 1, 2].map((k) => (shot ? cycle.meanOfCorners(shot, patch, k) : cycle.patchLight[3 * patch + k]));
+  const illuminance = lux(...light, scene.materialOf(surface));
   return new Map([
     ['Patch', { text: whole(patch), exact: patch }],
     ['Surface', { text: whole(surface), exact: surface }],
     ['Object', scene.objects[scene.surfaceObject[surface]] ?? '–'],
     ['Material', scene.materialOf(surface).name],
     ...bands.map((band, k) => [`Radiosity, ${band} (W/m²)`, number(light[k], digits)]),
-    ['Illuminance (lux)', lux === null || lux < 0 ? '–' : number(lux, digits)],
+    ['Illuminance (lux)', illuminance < 0 ? '–' : number(illuminance, digits)],
     ['Area (m²)', number(cycle.area(patch), digits)],
-    ['Estimated error η (W/m²·m)', number(eta, digits)],
+    ['Estimated error η (W/m²·m)', shot ? '–' : number(cycle.eta[patch], digits)],
   ]);
 }
 

@@ -12,10 +12,11 @@ function bytesOf(base64) {
 export function readPage() {
   const description = JSON.parse(document.getElementById('description').textContent);
   const buffer = bytesOf(document.getElementById('payload').textContent);
-  const read = ({ at, count, type, scale }) => {
+  const read = ({ at, count, type, scale, low, size }) => {
     if (type === 'float32') return new Float32Array(buffer, at, count);
     if (type === 'uint32') return new Uint32Array(buffer, at, count);
     const words = new Uint16Array(buffer, at, count);
+    if (type === 'unorm16') return Float32Array.from(words, (w, i) => low[i % 3] + (w / 65535) * size[i % 3]);
     return type === 'uint16' ? words : Float32Array.from(words, (w) => DataUtils.fromHalfFloat(w) * scale);
   };
   return { description, read };

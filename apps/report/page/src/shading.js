@@ -68,53 +68,55 @@ export function patchMaterial() {
   });
 }
 
-/// Three vertices of its own for each patch: triangle i of the geometry is patch i.
-export function patchGeometry(cycle) {
-  const n = cycle.corners.length;
+/// Whether each patch needs three vertices of its own: to have one value, or its edges drawn. Without, a vertex serves
+/// all patches around it, which is much faster.
+export const needsOwnCorners = ({ shading, quantity, wire }) => wire || shading === 'flat' || quantity === 'error';
+
+/// Triangle i of the geometry is patch i. `userData` holds for each vertex of the geometry the mesh's vertex and a patch.
+export function patchGeometry(cycle, ownCorners) {
+  const count = cycle.positions.length / 3, n = ownCorners ? cycle.corners.length : count;
+  const vertices = ownCorners ? cycle.corners : Uint32Array.from({ length: n }, (_, v) => v);
+  const patches = new Uint32Array(n);
+  for (let i = 0; i < cycle.corners.length; ++i) patches[ownCorners ? i : cycle.corners[i]] = Math.floor(i / 3);
   const position = new Float32Array(3 * n);
   for (let i = 0; i < n; ++i) {
-    const v = 3 * cycle.corners[i];
-    position[3 * i] = cycle.positions[v];
-    position[3 * i + 1] = cycle.positions[v + 1];
-    position[3 * i + 2] = cycle.positions[v + 2];
+    for (let k = 0; k < 3; ++k) position[3 * i + k] = cycle.positions[3 * vertices[i] + k];
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(position, 3));
   geometry.setAttribute('light', new BufferAttribute(new Float32Array(3 * n), 3));
   geometry.setAttribute('value', new BufferAttribute(new Float32Array(n), 1));
+  if (!ownCorners) geometry.setIndex(new BufferAttribute(cycle.corners, 1));
+  geometry.userData = { vertices, patches };
   return geometry;
 }
 
-/// Radiosity at the corners of all patches: the vertices' own (Gouraud), or the patch's one value (flat). `shot`, the
+/// Radiosity at the geometry's vertices: the mesh's own there (Gouraud), or the patch's one value (flat). `shot`, the
 /// progressive solution at the vertices, takes the place of the cycle's own light.
-function fillLight(light, cycle, shading, shot) {
-  const source = shot ?? cycle.vertexLight;
-  for (let p = 0; p < cycle.count; ++p) {
-    const corners = [0, 1, 2].map((k) => cycle.corners[3 * p + k]);
+function fillLight(light, { vertices, patches }, cycle, shading, shot) {
+  const flat = shading === 'flat', source = shot ?? cycle.vertexLight;
+  for (let i = 0; i < patches.length; ++i) {
     for (let band = 0; band < 3; ++band) {
-      const at = corners.map((v) => source[3 * v + band]);
-      const one = shot ? (at[0] + at[1] + at[2]) / 3 : cycle.patchLight[3 * p + band];
-      for (let k = 0; k < 3; ++k) light[9 * p + 3 * k + band] = shading === 'flat' ? one : at[k];
+      light[3 * i + band] = !flat ? source[3 * vertices[i] + band]
+        : shot ? cycle.meanOfCorners(shot, patches[i], band) : cycle.patchLight[3 * patches[i] + band];
     }
   }
 }
 
 /// What the colour map shows, from the light that fillLight() put there.
-function fillValue(value, light, cycle, quantity) {
-  for (let p = 0; p < cycle.count; ++p) {
-    const material = cycle.material(p);
-    for (let i = 3 * p; i < 3 * p + 3; ++i) {
-      const [r, g, b] = [light[3 * i], light[3 * i + 1], light[3 * i + 2]];
-      value[i] = quantity === 'lux' ? lux(r, g, b, material) : quantity === 'error' ? cycle.eta[p] : (r + g + b) / 3;
-    }
+function fillValue(value, light, { patches }, cycle, quantity) {
+  for (let i = 0; i < patches.length; ++i) {
+    const [r, g, b] = [light[3 * i], light[3 * i + 1], light[3 * i + 2]];
+    value[i] = quantity === 'lux' ? lux(r, g, b, cycle.material(patches[i]))
+      : quantity === 'error' ? cycle.eta[patches[i]] : (r + g + b) / 3;
   }
 }
 
 export function fillGeometry(geometry, cycle, { shading, quantity }, shot) {
   const { light, value } = geometry.attributes;
-  fillLight(light.array, cycle, shading, shot);
+  fillLight(light.array, geometry.userData, cycle, shading, shot);
   light.needsUpdate = true;
   if (quantity === 'light') return;
-  fillValue(value.array, light.array, cycle, quantity);
+  fillValue(value.array, light.array, geometry.userData, cycle, quantity);
   value.needsUpdate = true;
 }

@@ -3,7 +3,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { fillGeometry, patchGeometry, patchMaterial } from './shading.js';
+import { fillGeometry, needsOwnCorners, patchGeometry, patchMaterial } from './shading.js';
 
 const background = new Color('#14171d');
 const markColour = '#ff2d95';
@@ -17,9 +17,9 @@ function segments(cycle, ends, material) {
 
 /// One canvas: a cycle's patches, the lines on them, the patch that was asked for.
 class Side {
-  constructor(canvas, material, lineMaterials) {
+  constructor(canvas, material, lineMaterials, smooth) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
+    this.renderer = new WebGLRenderer({ canvas, antialias: smooth, powerPreference: 'low-power' });
     this.stage = new Stage();
     this.stage.background = background;
     this.mesh = new Mesh(undefined, material);
@@ -32,10 +32,14 @@ class Side {
   }
 
   show(cycle, look, shot) {
+    const ownCorners = needsOwnCorners(look);
+    if (cycle !== this.cycle || ownCorners !== this.ownCorners) {
+      this.ownCorners = ownCorners;
+      this.mesh.geometry.dispose();
+      this.mesh.geometry = patchGeometry(cycle, ownCorners);
+    }
     if (cycle !== this.cycle) {
       this.cycle = cycle;
-      this.mesh.geometry.dispose();
-      this.mesh.geometry = patchGeometry(cycle);
       for (const old of this.lines.children) old.geometry?.dispose();
       this.lines.clear();
       cycle.lines.forEach((ends, kind) => {
@@ -62,13 +66,14 @@ class Side {
 
 /// The two views and their one camera.
 export class Views {
-  /// `onPick` gets the patch of each side at the place asked for, null where there is none.
-  constructor({ canvases, scene, lineKinds, onPick }) {
+  /// `smooth`: whether edges are antialiased; slow on large meshes without graphics hardware. `onPick` gets the
+  /// patch of each side at the place asked for, null where there is none.
+  constructor({ canvases, scene, lineKinds, smooth, onPick }) {
     this.scene = scene;
     this.onPick = onPick;
     this.material = patchMaterial();
     const lineMaterials = lineKinds.map(({ color }) => new LineMaterial({ color, linewidth: 2.5 }));
-    this.sides = canvases.map((canvas) => new Side(canvas, this.material, lineMaterials));
+    this.sides = canvases.map((canvas) => new Side(canvas, this.material, lineMaterials, smooth));
     this.camera = new PerspectiveCamera(40, 1, scene.diameter * 1e-3, scene.diameter * 100);
     this.target = new Vector3();
     this.raycaster = new Raycaster();
