@@ -37,7 +37,7 @@ const tops = {
   error: niceAbove(Math.max(first.percentile(0.999, (p) => first.eta[p]), last.percentile(0.999, (p) => last.eta[p]))),
 };
 const mapTitles = {
-  lux: 'Illuminance, lux (683 lm/W)',
+  lux: 'Illuminance, lux (683 lm/W; grey: reflects nothing)',
   radiosity: 'Radiosity, W/m², mean of the bands',
   error: 'Estimated error per patch, W/m²·m',
 };
