@@ -17,7 +17,7 @@ const Rgb ground{0.09, 0.09, 0.10};
 const Rgb bright{0.95, 0.95, 0.95};
 const Rgb dim{0.70, 0.72, 0.75};
 const Rgb no_value{0.38, 0.38, 0.38};
-constexpr double half_line = 0.6;  // pixels
+constexpr double half_line = 0.45;  // pixels
 constexpr double legend_ticks = 9;
 
 Rgb decoded(const Rgb& srgb)

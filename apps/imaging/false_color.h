@@ -22,7 +22,7 @@ struct FalseColor {
 ColorTable diverging_colors();
 
 /// sRGB values. Each sample is coloured, then a pixel's samples are averaged in linear light. Where there is no value
-/// it is grey. Isolines are 1.2 pixels wide, antialiased, black on bright colours and white on dark ones; they end
+/// it is grey. Isolines are .9 pixels wide, antialiased, black on bright colours and white on dark ones; they end
 /// where another surface begins.
 Image false_color(const QuantityMap& map, const FalseColor& how);
 
