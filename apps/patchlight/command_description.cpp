@@ -38,7 +38,7 @@ ValueKind kind_of(const std::string& type)
     ValueKind kind = ValueKind::free;
     for (const std::string& word : split(type, '|')) {
         // A file's completion offers folders, too.
-        if (word == "FILE" || word == "SCENE" || word == "IMAGE" || word == "STUDY") {
+        if (word.starts_with("FILE") || word == "SCENE" || word == "IMAGE" || word == "STUDY") {
             return ValueKind::file;
         }
         if (word == "DIR" || word.starts_with("RUN")) {

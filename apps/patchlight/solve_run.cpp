@@ -109,8 +109,9 @@ bool SolveRun::go()
         if (before.cycles.empty() || before.cycles.back().splits > 0) {
             solve_from(before);
         }
-        display_.clear();
+        display_.show({.stage = "results", .cycle = -1});
         write_results();
+        display_.clear();
         folder_.finish(converged() ? RunStatus::finished : RunStatus::not_converged, converged(), machine());
         return converged();
     } catch (const Interrupted&) {

@@ -161,8 +161,8 @@ TEST_F(TerminalTest, BarIsDrawnTenTimesASecondAtMostAndRunsForward)
     std::size_t indirect = 0;
     for (const std::string& bar : bars) {
         std::smatch match;
-        ASSERT_TRUE(std::regex_search(bar, match, std::regex(R"((\d+) %  (\w+))"))) << bar;
-        if (match[2] != "indirect") continue;
+        // Bars of stages that don't tell how far they are have no number.
+        if (!std::regex_search(bar, match, std::regex(R"((\d+) %  indirect)"))) continue;
         ++indirect;
         EXPECT_GE(std::stod(match[1]), last) << "the indirect stage is one, however many loops it takes";
         last = std::stod(match[1]);
