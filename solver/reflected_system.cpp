@@ -64,8 +64,8 @@ void ReflectedSystem::record(double residual, SolveReport& report, const SolveOp
     report.converged = residual <= options.tolerance;
     if (report.iterations > 0) report.history.push_back(residual);
     if (monitor.tell)
-        monitor.tell({.fraction = std::clamp(std::log(residual) / std::log(options.tolerance), 0.0, 1.0),
-                      .residual = residual});
+        monitor.tell(
+            {.fraction = std::clamp(std::log(residual) / std::log(options.tolerance), 0.0, 1.0), .residual = residual});
 }
 
 Rgb dot(const PatchField<Rgb>& w, const Radiosity& a, const Radiosity& b)

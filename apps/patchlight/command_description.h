@@ -16,7 +16,7 @@ enum class ValueKind { none, free, choice, file, folder };
 struct OptionDescription {
     std::vector<std::string> names;  ///< as typed: "-o", "--refine"; empty: a value by its place
     std::string value;               ///< what stands for its value: "N", "RUN"; empty: there is none
-    int values = 0;  ///< words it takes
+    int values = 0;                  ///< words it takes
     ValueKind kind = ValueKind::free;
     std::vector<std::string> choices;
     std::string text;  ///< what it does, and in brackets what is done without it

@@ -66,9 +66,10 @@ void add_compare(CLI::App& app, CompareCommand& c, CompareTexts& t)
         ->allow_extra_args(false);
     add_false_color(app, c.false_color, t.false_color);
     app.add_flag("--json", c.json, "print JSON instead of a table [off]");
-    app.footer("Both are seen by the same camera, at one size and exposure. RMSE is of linear radiance B/pi, in\n"
-               "W/(m2 sr), over pixels and bands. FLIP is LDR-FLIP at 67 pixels per degree. L2 is relative to\n"
-               "B's reflected light over all surface that reflects.");
+    app.footer("Both are seen by the same camera, at one size and exposure. RMSE is of linear\n"
+               "radiance B/pi, in W/(m2 sr), over pixels and bands. FLIP is LDR-FLIP at 67\n"
+               "pixels per degree. L2 is relative to B's reflected light over all surface that\n"
+               "reflects.");
 }
 
 void finish_compare(CompareCommand& c, const CompareTexts& t)

@@ -82,8 +82,8 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     const double elements = elements_of(scene, options);
     CostEstimate cost;
     cost.elements = static_cast<std::size_t>(std::min(elements, 1e18));
-    // Rays are traced for the patches of the uniform mesh, and from the nodes where indirect light is gathered: about as
-    // many as elements.
+    // Rays are traced for the patches of the uniform mesh, and from the nodes where indirect light is gathered: about
+    // as many as elements.
     const double vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
     cost.rays = 0.25 * elements * (options.form_factors.rays + 4 * vertex_rays);
     cost.bytes = solve_bytes(static_cast<double>(cost.elements), options);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace patchlight {
 
@@ -113,9 +114,11 @@ Json line_kinds_json()
     return kinds;
 }
 
-/// Of timing.json what the page shows; the host's name is nobody's business. Without the file: null.
+/// Of timing.json what the page shows; the host's name is nobody's business. Without the file, or where a build is to
+/// be reproducible (reproducible-builds.org): null.
 Json timing_of(const std::filesystem::path& folder)
 {
+    if (std::getenv("SOURCE_DATE_EPOCH") != nullptr) return nullptr;
     try {
         const Json stored = Json::parse(read_bytes(folder / "timing.json"));
         Json out = Json::object();

@@ -2,6 +2,7 @@
 
 #include "apps/report/page_files.h"
 #include "apps/report/report_data.h"
+#include "apps/run/markup_text.h"
 #include "apps/run/sha256.h"
 #include "apps/run/stored_scene.h"
 
@@ -58,7 +59,7 @@ std::string html_of(const OpenedRun& run, const ReportData& data)
 </body>
 </html>
 )",
-                       policy, html_text(tool_version()), html_text(as_utf8(run.record.identity.scene_file)), style,
+                       policy, markup_text(tool_version()), markup_text(as_utf8(run.record.identity.scene_file)), style,
                        body, script_json(data.description), base64(data.payload.bytes()), script);
 }
 

@@ -37,9 +37,6 @@ private:
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
 
-/// The text with &, <, >, " and ' as entities: safe as an element's text or a quoted attribute.
-std::string html_text(std::string_view text);
-
 /// JSON that is safe inside a script element: no <, >, & and none of the two line ends that JavaScript knows.
 std::string script_json(const Json& json);
 

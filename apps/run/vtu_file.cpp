@@ -1,6 +1,7 @@
 #include "apps/run/vtu_file.h"
 
 #include "apps/run/element_nodes.h"
+#include "apps/run/markup_text.h"
 #include "apps/run/stored_scene.h"
 
 #include <fmt/format.h>
@@ -109,27 +110,6 @@ void add_cell_data(const StoredSolution& solution, Arrays& arrays)
     arrays.close("CellData");
 }
 
-std::string escaped(const std::string& text)
-{
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        default:
-            out += c;
-        }
-    }
-    return out;
-}
-
 }  // namespace
 
 std::string encode_vtu(const StoredSolution& solution)
@@ -152,7 +132,7 @@ std::string encode_pvd(const std::vector<std::pair<int, std::string>>& files)
     std::string out = "<?xml version=\"1.0\"?>\n"
                       "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
     for (const auto& [cycle, name] : files) {
-        out += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", cycle, escaped(as_utf8(name)));
+        out += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", cycle, markup_text(as_utf8(name)));
     }
     return out + "</Collection>\n</VTKFile>\n";
 }

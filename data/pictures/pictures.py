@@ -48,8 +48,10 @@ def before_and_after(runs, file):
     file.write_bytes((runs.box() / "compare.png").read_bytes())
 
 
-def mesh(runs, file):
-    file.write_bytes((runs.box() / "mesh-after.png").read_bytes())
+def mesh(which):
+    def make(runs, file):
+        file.write_bytes((runs.box() / f"mesh-{which}.png").read_bytes())
+    return make
 
 
 def lines(runs, file):
@@ -87,7 +89,8 @@ def shot(count):
 
 ALL = {
     "cornell-box-compare.png": before_and_after,
-    "cornell-box-mesh.png": mesh,
+    "cornell-box-mesh-before.png": mesh("before"),
+    "cornell-box-mesh.png": mesh("after"),
     "discontinuity-lines.png": lines,
     "furniture-room-lux.png": false_color,
     "cornell-box-error.png": error_map,

@@ -40,6 +40,17 @@ TEST_F(ReportTest, WritesOnePageThatNamesNothingElsewhere)
     EXPECT_EQ(text_of(folder_ / "again.html"), page) << "byte for byte";
 }
 
+TEST_F(ReportTest, TwoRunsOfOneSceneGiveOnePageWhereItIsToBeReproducible)
+{
+    const std::string scene = write_scene();
+    solve(scene);
+    ASSERT_EQ(run(small({"solve", scene, "-o", path("run2"), "--quiet", "--threads", "1"})).code, 0);
+    const Surroundings around{.environment = {{"SOURCE_DATE_EPOCH", "0"}}};
+    ASSERT_EQ(run({"report", path("run"), "-o", path("a.html")}, around).code, 0);
+    ASSERT_EQ(run({"report", path("run2"), "-o", path("b.html")}, around).code, 0);
+    EXPECT_EQ(text_of(folder_ / "a.html"), text_of(folder_ / "b.html"));
+}
+
 TEST_F(ReportTest, NamesCannotBecomeMarkup)
 {
     std::string scene = scene_text, materials = material_text;

@@ -1,6 +1,7 @@
 #include "apps/report/page_files.h"
 #include "apps/report/report_data.h"
 #include "apps/report/report_payload.h"
+#include "apps/run/markup_text.h"
 
 #include <gmock/gmock.h>
 
@@ -26,7 +27,7 @@ TEST(ReportPayloadTest, Base64IsThatOfTheStandard)
 
 TEST(ReportPayloadTest, TextCannotBecomeMarkup)
 {
-    EXPECT_EQ(html_text("<b title=\"x\">'&'</b>"), "&lt;b title=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/b&gt;");
+    EXPECT_EQ(markup_text("<b title=\"x\">'&'</b>"), "&lt;b title=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/b&gt;");
     const Json hostile = {{"</script><script>alert(1)</script>", "<!--\xe2\x80\xa8&"}};
     const std::string text = script_json(hostile);
     for (const char* bad : {"<", ">", "&", "\xe2\x80\xa8"}) EXPECT_THAT(text, Not(HasSubstr(bad)));

@@ -219,7 +219,7 @@ TEST(Links, AreReciprocal)
     }
     EXPECT_GT(xFy, 0);
     EXPECT_NEAR(xFy / yFx, 1, 1e-12);
-    EXPECT_EQ(sizeof(Link), 16U);
+    EXPECT_EQ(sizeof(Link), 20U);
 }
 
 TEST(Hierarchical, OnePatchAndNoLight)
