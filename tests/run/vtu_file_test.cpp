@@ -65,7 +65,7 @@ TEST(VtuFile, SaysWhatItHolds)
 TEST(VtuFile, SeriesEscapesNames)
 {
     EXPECT_THAT(encode_pvd({{7, "a<b>&\"c\".vtu"}}),
-                HasSubstr("timestep=\"7\" part=\"0\" file=\"a&lt;b>&amp;&quot;c&quot;.vtu\""));
+                HasSubstr("timestep=\"7\" part=\"0\" file=\"a&lt;b&gt;&amp;&quot;c&quot;.vtu\""));
 }
 
 TEST(Exports, AQuadraticElementBecomesFourTriangles)
