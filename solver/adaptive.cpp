@@ -59,9 +59,10 @@ private:
     std::size_t rays_of_loop_ = 0;
 };
 
-/// The uniform mesh to begin with. An automatic one leaves three quarters of the budget to refinement.
+/// The mesh that is given, or the uniform one to begin with. An automatic one leaves three quarters of the budget to refinement.
 PatchMesh first_mesh(const Scene& scene, const AdaptiveOptions& options)
 {
+    if (options.mesh) return PatchMesh(scene, *options.mesh);
     PatchMesh mesh = triangulate(scene, options.meshing);
     const bool automatic = options.meshing.max_edge <= 0 && options.meshing.max_elements == 0;
     if (options.refine == Refine::none || !automatic || 4 * mesh.patch_count() <= options.max_elements) return mesh;

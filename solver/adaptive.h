@@ -27,6 +27,8 @@ enum class Refine {
 /// Everything solve_adaptively needs to know.
 struct AdaptiveOptions {
     MeshingOptions meshing;  ///< of the first, uniform mesh (with Refine::none: the only one)
+    /// Solved on instead of the uniform mesh, with Refine::none: methods compared on one mesh.
+    std::optional<PatchMeshArrays> mesh;
     FormFactorOptions form_factors;
     SolveOptions final{.solver = Solver::gauss_seidel, .tolerance = 1e-4};  ///< of the patches of the uniform mesh
     GatherOptions gather{.rays = 0};  ///< no rays: as many as the error asks for; on a uniform mesh 512

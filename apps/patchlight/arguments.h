@@ -35,6 +35,8 @@ struct SolveCommand {
     std::string run;
     AdaptiveOptions options;
     PictureArguments pictures;
+    std::string mesh_of;       ///< a run whose last mesh is solved on; empty: a mesh of its own
+    std::string mesh_sha256;   ///< of the solution that holds that mesh, once it is read
     std::string for_view;      ///< a camera's name or a file: refined for what it sees; empty: for everything
     std::optional<View> goal;  ///< that camera, once the scene is read
     bool quiet = false;

@@ -18,6 +18,8 @@ int run(int argc, const char* const* argv, Session& session)
     return std::visit([&](const auto& chosen) { return run_command(chosen, session); }, command);
 }
 
+constexpr const char* interrupted = "interrupted; the same command goes on from the last finished cycle";
+
 /// What went wrong as a message and an exit code.
 int run_and_report(int argc, const char* const* argv, Session& session)
 {
@@ -46,7 +48,7 @@ int run_and_report(int argc, const char* const* argv, Session& session)
         say.error("output", error.what());
         return 6;
     } catch (const Interrupted&) {
-        say.note("interrupted; the same command goes on from the last finished cycle");
+        say.note(interrupted);
         return session.interruption.exit_code();
     } catch (const PipeClosed&) {
         return 128 + SIGPIPE;
@@ -64,7 +66,7 @@ int main(int argc, char** argv)
 {
     patchlight::keep_standard_descriptors();
     patchlight::Messages messages;
-    patchlight::Interruption interruption([&] { messages.close_status(); });
+    patchlight::Interruption interruption([&] { messages.close(patchlight::interrupted); });
     patchlight::FileWriter writer;
     patchlight::Session session{messages, interruption, writer};
     return patchlight::run_and_report(argc, argv, session);

@@ -29,6 +29,12 @@ void add_meshing(CLI::App& app, SolveCommand& c, SolveTexts& t)
                    "what --max-elements allows]")
         ->check(number_above(0))
         ->type_name("LENGTH");
+    app.add_option("--mesh", c.mesh_of,
+                   "solve on the last mesh of another run of the same surfaces, as it is: methods compared on one mesh "
+                   "[a mesh of its own]")
+        ->excludes("--refine")
+        ->excludes("--max-edge")
+        ->type_name("RUN");
     t.max_elements_option = app.add_option("--max-elements", o.max_elements, "budget of elements (triangles)")
                                 ->check(whole_between(1, 1'000'000'000))
                                 ->type_name("N")
@@ -155,7 +161,7 @@ void finish_solve(SolveCommand& c, const SolveTexts& t)
 {
     finish_scene(c.scene, t.scene);
     AdaptiveOptions& o = c.options;
-    o.refine = mode_of(refine_names(), t.refine);
+    o.refine = c.mesh_of.empty() ? mode_of(refine_names(), t.refine) : Refine::none;
     o.elements = mode_of(element_names(), t.elements);
     o.direct = mode_of(direct_names(), t.direct);
     o.final.solver = mode_of(solver_names(), t.solver);
@@ -179,6 +185,9 @@ void finish_solve(SolveCommand& c, const SolveTexts& t)
     o.mark.marking = mode_of(marking_names(), t.marking);
     o.gather.seed = o.form_factors.seed;
     o.meshing.max_edge = t.max_edge * c.scene.options.unit;
+    if (!c.mesh_of.empty() && t.max_elements_option->count() > 0) {
+        throw UsageError("usage", "--max-elements: the mesh of --mesh is solved as it is");
+    }
     const bool uniform = o.refine == Refine::none || o.refine == Refine::discontinuity;
     if (uniform && (t.max_edge <= 0 || t.max_elements_option->count() > 0)) {
         o.meshing.max_elements = o.max_elements;

@@ -2,6 +2,7 @@
 #include "apps/patchlight/before_after_table.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
+#include "apps/patchlight/given_mesh.h"
 #include "apps/patchlight/scene_input.h"
 #include "apps/patchlight/solve_run.h"
 #include "apps/patchlight/usage_error.h"
@@ -145,6 +146,12 @@ int run_command(const SolveCommand& given, Session& session)
     }
     SceneInput input = load_scene(command.scene);
     session.interruption.check();
+    if (!command.mesh_of.empty()) {
+        GivenMesh given_mesh = mesh_of_run(command.mesh_of, input.scene);
+        command.mesh_sha256 = given_mesh.sha256;
+        command.options.max_elements = command.options.meshing.max_elements = given_mesh.arrays.triangles.size();
+        command.options.mesh = std::move(given_mesh.arrays);
+    }
     check_memory(input.scene, command.options, command.memory);
     const RayCaster caster(input.scene);
     const View view = command.pictures.pictures ? chosen_view(command.scene.view, input.scene, caster) : View{};

@@ -74,6 +74,7 @@ RunIdentity identity_of(const SceneInput& input, const SolveCommand& command, co
     // A round trip through text, so that options compare as they will when read back: names in UTF-8 and numbers alike.
     const Json options = {{"scene", scene},
                           {"solve", json_of(command.options)},
+                          {"mesh", command.mesh_of.empty() ? Json() : Json(command.mesh_sha256)},
                           {"for_view", command.goal ? json_of(*command.goal) : Json()},
                           {"pictures",
                            {{"written", command.pictures.pictures ? "all" : "none"},

@@ -91,11 +91,11 @@ void Messages::status(std::string_view text) const
     has_status_ = !text.empty();
 }
 
-void Messages::close_status() const
+void Messages::close(std::string_view last_note) const
 {
     const std::unique_lock lock(writing_, std::chrono::milliseconds(50));
     if (lock.owns_lock()) {
-        (void)write_all(STDERR_FILENO, erased());
+        (void)write_all(STDERR_FILENO, erased() + (quiet_ ? "" : harmless(last_note) + "\n"));
         has_status_ = false;
         closed_ = true;
     }

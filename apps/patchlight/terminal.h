@@ -25,9 +25,9 @@ public:
 
     /// One line, not wider than columns() less one; empty: none. Only where shows_status().
     void status(std::string_view text) const;
-    /// Erases the status for good: before the program leaves by another door than main's. Doesn't wait for a writer
-    /// that is stuck.
-    void close_status() const;
+    /// Erases the status for good and says a last note: before the program leaves by another door than main's. Doesn't
+    /// wait for a writer that is stuck.
+    void close(std::string_view last_note) const;
 
     /// `text` in a colour, as in "1;31", where colours are wanted.
     std::string colored(const char* color, std::string_view text) const;

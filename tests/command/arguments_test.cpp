@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
                                            solving({"--refine", "quadratic"}),
                                            solving({"--form-factors", "monte-carlo"}),
                                            solving({"--form-factors", "closed-form"}), solving({"--overshoot"}),
-                                           solving({"--resolution", "127"}), solving({"--mesh", "a"})));
+                                           solving({"--resolution", "127"})));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, RefusedArguments,

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <sstream>
 
 namespace patchlight::testing {
 namespace {
@@ -53,6 +55,63 @@ TEST_F(SolversTest, EachSolverTellsHowItWent)
         EXPECT_EQ(history.back(), solve.at("residual").get<double>());
         EXPECT_LT(history.back(), history.front()) << solver;
     }
+}
+
+// The adaptive mesh of one run, lit by two solvers: the same triangles, and the same light to what links may add.
+TEST_F(SolversTest, MethodsAreComparedOnOneMesh)
+{
+    ASSERT_EQ(
+        run({"solve", box, "--unit", "mm", "-o", path("fine"), "--pictures", "none", "--max-elements", "900"}).code, 0);
+    const auto on_mesh = [&](const std::string& name, const std::string& solver) {
+        const Outcome outcome = run({"solve", box, "--unit", "mm", "-o", path(name), "--mesh", path("fine"),
+                                     "--pictures", "none", "--solver", solver, "--json"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return nlohmann::json::parse(outcome.out);
+    };
+    const auto gathered = on_mesh("a", "gauss-seidel"), linked = on_mesh("b", "hierarchical");
+    const auto first = nlohmann::json::parse(text_of(folder_ / "fine/run.json"));
+    EXPECT_EQ(gathered["cycles"].size(), 1U);
+    EXPECT_EQ(gathered["result"]["elements"], first["result"]["elements"]);
+    EXPECT_EQ(gathered["options"]["mesh"].get<std::string>().size(), 64U);
+    EXPECT_EQ(gathered["options"]["mesh"], linked["options"]["mesh"]);
+    EXPECT_NEAR(linked["energy"]["absorbed"].get<double>() / gathered["energy"]["absorbed"].get<double>(), 1, 0.02);
+    for (const std::string run_name : {"fine", "a", "b"})
+        ASSERT_EQ(run({"export", path(run_name), "--format", "csv", "-o", path(run_name + ".csv")}).code, 0);
+    const auto geometry = [&](const std::string& file) {
+        // patch, surface, material, centroid, area: what comes before the light.
+        std::istringstream lines(text_of(folder_ / file));
+        std::string all, line;
+        while (std::getline(lines, line)) {
+            std::size_t at = 0;
+            for (int comma = 0; comma < 7; ++comma) at = line.find(',', at) + 1;
+            all += line.substr(0, at) + "\n";
+        }
+        return all;
+    };
+    EXPECT_EQ(geometry("a.csv"), geometry("fine.csv"));
+    EXPECT_EQ(geometry("b.csv"), geometry("fine.csv"));
+}
+
+TEST_F(SolversTest, AMeshOfOtherSurfacesIsRefused)
+{
+    ASSERT_EQ(
+        run({"solve", box, "--unit", "mm", "-o", path("fine"), "--pictures", "none", "--max-elements", "300"}).code, 0);
+    const auto refused = [&](const std::vector<std::string>& words) {
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+        return outcome.err;
+    };
+    const std::string other = PATCHLIGHT_DATA "/scenes/furnace.obj";
+    EXPECT_THAT(refused({"solve", other, "-o", path("other"), "--mesh", path("fine")}), HasSubstr("surfaces"));
+    EXPECT_THAT(refused({"solve", box, "-o", path("other"), "--mesh", path("fine")}),
+                HasSubstr("only materials may differ"))
+        << "in metres instead of millimetres";
+    EXPECT_THAT(refused({"solve", box, "-o", path("other"), "--mesh", path("none")}), HasSubstr("none"));
+    EXPECT_THAT(refused({"solve", box, "-o", path("other"), "--mesh", path("fine"), "--refine", "both"}),
+                HasSubstr("--refine"));
+    EXPECT_THAT(refused({"solve", box, "-o", path("other"), "--mesh", path("fine"), "--max-elements", "9"}),
+                HasSubstr("--max-elements"));
 }
 
 // One linear system by four solvers: the energies agree to the tolerance of 1e-4. Conjugate gradients on hemisphere

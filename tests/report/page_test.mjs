@@ -11,7 +11,7 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { axeSource, countedPixels, launch } from './browser.mjs';
-import { firstHit, readSolution } from './solution.mjs';
+import { firstHit, levelOf, readSolution } from './solution.mjs';
 
 const [patchlight, scene, modules, output] = process.argv.slice(2);
 const require = createRequire(join(modules, 'x.js'));
@@ -135,6 +135,7 @@ async function expectPickEqualsSolution(page, ask) {
     const patch = told.Patch.exact;
     assert.equal(patch, firstHit(solution, view.from, view.forward), 'the patch that a ray through the middle hits');
     assert.equal(told.Surface.exact, solution.patch_surface[patch]);
+    assert.equal(told['Level (halvings of its surface)'].exact, levelOf(solution, patch));
     for (const [band, name] of ['red', 'green', 'blue'].entries()) {
       const stored = solution.patch_radiosity[3 * patch + band], { exact, text } = told[`Radiosity, ${name} (W/m²)`];
       // The page holds floats: half a unit of their last place is 6e-8.

@@ -22,6 +22,16 @@ const minus = (a, b) => a.map((v, k) => v - b[k]);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
+/// How many halvings of its surface lead to a patch of its size.
+export function levelOf({ positions, patches, patch_surface: surfaces }, patch) {
+  const area = (p) => {
+    const [a, b, c] = [0, 1, 2].map((k) => Array.from(positions.subarray(3 * patches[3 * p + k], 3 * patches[3 * p + k] + 3)));
+    return Math.hypot(...cross(minus(b, a), minus(c, a))) / 2;
+  };
+  const whole = [...surfaces.keys()].filter((p) => surfaces[p] === surfaces[patch]).reduce((sum, p) => sum + area(p), 0);
+  return Math.round(Math.log2(whole / area(patch)));
+}
+
 /// The first patch whose front a ray meets [MoellerTrumbore97]; null when there is none.
 export function firstHit({ positions, patches }, from, direction) {
   let nearest = Infinity, hit = null;

@@ -65,6 +65,14 @@ export class Cycle {
     return triangleArea(this.positions, a, b, c);
   }
 
+  /// How many halvings of its surface lead to a patch of its size: what VTU files call level, too.
+  level(patch) {
+    const surface = this.patchSurface[patch];
+    let whole = 0;
+    for (let p = 0; p < this.count; ++p) if (this.patchSurface[p] === surface) whole += this.area(p);
+    return Math.max(0, Math.round(Math.log2(whole / this.area(patch))));
+  }
+
   /// Of values at the vertices, three bands each.
   meanOfCorners(values, patch, band) {
     let sum = 0;

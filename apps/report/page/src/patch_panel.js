@@ -17,6 +17,7 @@ function facts(cycle, patch, scene, shot) {
     ...bands.map((band, k) => [`Radiosity, ${band} (W/m²)`, number(light[k], digits)]),
     ['Illuminance (lux)', illuminance < 0 ? '–' : number(illuminance, digits)],
     ['Area (m²)', number(cycle.area(patch), digits)],
+    ['Level (halvings of its surface)', { text: whole(cycle.level(patch)), exact: cycle.level(patch) }],
     ['Estimated error η (W/m²·m)', shot ? '–' : number(cycle.eta[patch], digits)],
   ]);
 }
