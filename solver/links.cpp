@@ -162,7 +162,8 @@ LinkingReport LinkOperator::refine(const NodeLight& light, double most, const Wo
 {
     LinkingReport report;
     std::vector<Pair> work, next;
-    if (!started_ && !tree_.nodes.empty()) work.push_back({tree_.root(), tree_.root()});
+    const bool from_root = !started_;
+    if (from_root && !tree_.nodes.empty()) work.push_back({tree_.root(), tree_.root()});
     started_ = true;
     std::size_t kept = 0;
     for (const Link& link : links_) {
@@ -180,7 +181,8 @@ LinkingReport LinkOperator::refine(const NodeLight& light, double most, const Wo
     }
     links_.resize(kept);
     NodeExchange::Scratch scratch;
-    while (!work.empty() && work.size() < enough_pairs) {
+    while (from_root && !work.empty() && work.size() < enough_pairs) {
+        if (monitor.stop.stop_requested()) throw Interrupted();
         next.clear();
         for (const Pair& pair : work) {
             const Judged j = judge(pair, light, most, scratch);

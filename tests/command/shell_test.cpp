@@ -50,7 +50,7 @@ TEST_F(ShellTest, ScriptsAreWellFormed)
 {
     for (const char* shell : {"bash", "zsh", "fish"}) {
         const std::string file = completion(shell);
-        if (!there_is(shell)) GTEST_SKIP() << shell << " is not installed";
+        ASSERT_TRUE(there_is(shell)) << "./dev installs it";
         EXPECT_EQ(printed_by(std::string(shell) + " -n", folder_ / "scratch", text_of(file)), "exit 0\n") << shell;
     }
 }
@@ -75,7 +75,7 @@ TEST_F(ShellTest, BashCompletesCommandsOptionsAndValues)
 
 TEST_F(ShellTest, FishCompletesCommandsOptionsAndValues)
 {
-    if (!there_is("fish")) GTEST_SKIP() << "fish is not installed";
+    ASSERT_TRUE(there_is("fish")) << "./dev installs it";
     const std::string file = completion("fish");
     const auto offers = [&](const std::string& line) {
         return printed_by("HOME=" + folder_.string() + " fish --no-config", folder_ / "scratch",
@@ -89,7 +89,7 @@ TEST_F(ShellTest, FishCompletesCommandsOptionsAndValues)
 
 TEST_F(ShellTest, ZshCompletesInASession)
 {
-    if (!there_is("zsh")) GTEST_SKIP() << "zsh is not installed";
+    ASSERT_TRUE(there_is("zsh")) << "./dev installs it";
     // zsh completes only where somebody types: a terminal inside, in which a tab completes what is the only way on.
     const std::string script = "zmodload zsh/zpty\nzpty z 'zsh -f -i'\n"
                                "zpty -w z 'PROMPT=; autoload -Uz compinit; compinit -u -d " +
@@ -124,7 +124,7 @@ TEST_F(ShellTest, ManualPageHoldsEveryCommandAndOptionAndPleasesGroff)
             EXPECT_NE(of_command.find("\n.B " + (*match)[1].str()), std::string::npos) << (*match)[1];
     }
     EXPECT_GT(options, 50U);
-    if (!there_is("groff")) GTEST_SKIP() << "groff is not installed";
+    ASSERT_TRUE(there_is("groff")) << "./dev installs it";
     EXPECT_EQ(printed_by("groff -man -ww -z -Tutf8", folder_ / "scratch", page.out), "exit 0\n");
 }
 
