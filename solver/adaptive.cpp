@@ -59,7 +59,8 @@ private:
     std::size_t rays_of_loop_ = 0;
 };
 
-/// The mesh that is given, or the uniform one to begin with. An automatic one leaves three quarters of the budget to refinement.
+/// The mesh that is given, or the uniform one to begin with. An automatic one leaves three quarters of the budget to
+/// refinement.
 PatchMesh first_mesh(const Scene& scene, const AdaptiveOptions& options)
 {
     if (options.mesh) return PatchMesh(scene, *options.mesh);

@@ -132,7 +132,7 @@ int run_command(const AnimateCommand& command, Session& session)
         write_frames(output, frames, session);
         return 0;
     }
-    if (output.has_parent_path()) FileWriter::make_folder(output.parent_path());
+    FileWriter::make_folder_of(output);
     session.writer.write(output, encode_animation(frames, command.delay));
     return 0;
 }

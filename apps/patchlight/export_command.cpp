@@ -14,11 +14,6 @@ namespace patchlight {
 
 namespace {
 
-void make_folder_of(const std::filesystem::path& file)
-{
-    if (file.has_parent_path()) FileWriter::make_folder(file.parent_path());
-}
-
 std::string encoded(const std::string& format, const StoredSolution& stored)
 {
     if (format == "vtu") return encode_vtu(stored);
@@ -81,13 +76,13 @@ int run_command(const ExportCommand& command, Session& session)
     const std::filesystem::path output(command.output);
     if (command.format == "pvd") {
         (void)record_of(run, {});  // throws when there is no cycle
-        make_folder_of(output);
+        FileWriter::make_folder_of(output);
         export_series(run, output, session);
         return 0;
     }
     const StoredSolution stored = solution_of(run, command.cycle);
     session.interruption.check();
-    make_folder_of(output);
+    FileWriter::make_folder_of(output);
     if (command.format == "lightmap") {
         export_lightmap(run, stored, command, session);
     } else {

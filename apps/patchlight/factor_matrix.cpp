@@ -71,10 +71,7 @@ FormFactorMatrix computed(const Scene& scene, const PatchMesh& mesh, const FormF
 void make_folders(const FormFactorsCommand& command)
 {
     for (const std::string& file : {command.output, command.patches}) {
-        const auto folder = std::filesystem::path(file).parent_path();
-        if (!folder.empty()) {
-            FileWriter::make_folder(folder);
-        }
+        FileWriter::make_folder_of(file);
     }
 }
 

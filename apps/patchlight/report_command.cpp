@@ -42,7 +42,7 @@ int run_command(const ReportCommand& command, Session& session)
     const ReportPage page = report_page(run);
     session.interruption.check();
     const std::filesystem::path file = command.page;
-    if (file.has_parent_path()) FileWriter::make_folder(file.parent_path());
+    FileWriter::make_folder_of(file);
     session.writer.write(file, page.html);
     const std::size_t all = run.record.cycles.size();
     if (page.cycles.size() < all) {

@@ -32,15 +32,6 @@ View render_view(const RenderCommand& command, const Scene& scene, const RayCast
     return view;
 }
 
-std::string folder_first(const std::string& file)
-{
-    const auto folder = std::filesystem::path(file).parent_path();
-    if (!folder.empty()) {
-        FileWriter::make_folder(folder);
-    }
-    return file;
-}
-
 std::string read_input(const std::string& file)
 {
     try {
@@ -66,7 +57,8 @@ int run_command(const RenderCommand& command, Session& session)
         const ViewHits hits = trace_view(caster, view, width, height, 2);
         const FalseColorMap map{shown, stored.eta, hits, command.false_color, command.shade};
         session.interruption.check();
-        session.writer.write(folder_first(command.image),
+        FileWriter::make_folder_of(command.image);
+        session.writer.write(command.image,
                              encode_png(map.picture(scale_of({&map}, command.false_color), command.wireframe)));
         return 0;
     }
@@ -77,7 +69,8 @@ int run_command(const RenderCommand& command, Session& session)
         options.patch_borders = command.wireframe;
         const Json about = {{"run", run.record.identity.options},
                             {"shade", command.shade == Shade::flat ? "flat" : "gouraud"}};
-        session.writer.write(folder_first(command.image),
+        FileWriter::make_folder_of(command.image);
+        session.writer.write(command.image,
                              encode_exr(shade_view(shown, centers, options), exr_metadata(stored.scene, view, about)));
         return 0;
     }
@@ -92,7 +85,8 @@ int run_command(const RenderCommand& command, Session& session)
         draw_line_legend(stored.mesh, picture);
     }
     session.interruption.check();
-    session.writer.write(folder_first(command.image), encode_png(picture));
+    FileWriter::make_folder_of(command.image);
+    session.writer.write(command.image, encode_png(picture));
     return 0;
 }
 
@@ -112,7 +106,8 @@ int run_command(const ProbeCommand& command, Session& session)
     if (command.output.empty()) {
         write_result(csv);
     } else {
-        session.writer.write(folder_first(command.output), csv);
+        FileWriter::make_folder_of(command.output);
+        session.writer.write(command.output, csv);
     }
     return 0;
 }

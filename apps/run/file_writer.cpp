@@ -127,6 +127,11 @@ void FileWriter::make_folder(const std::filesystem::path& folder)
     }
 }
 
+void FileWriter::make_folder_of(const std::filesystem::path& file)
+{
+    if (file.has_parent_path()) make_folder(file.parent_path());
+}
+
 void FileWriter::abandon() noexcept
 {
     const std::lock_guard lock(mutex_);

@@ -34,6 +34,8 @@ public:
 
     /// Makes a folder, and those above it. Throws OutputError.
     static void make_folder(const std::filesystem::path& folder);
+    /// The same for the folder that a file is to stand in.
+    static void make_folder_of(const std::filesystem::path& file);
 
     /// Unlinks what is unfinished. For the way out after an interrupt: nothing can be written afterwards.
     void abandon() noexcept;
