@@ -148,7 +148,7 @@ TEST(Architecture, IncludesRunDownwardsOnly)
         {"apps/imaging", core},
         {"apps/run", core},
         {"apps/verification", {"meshing", "formfactor"}},
-        {"apps/study", {"meshing", "formfactor", "solver", "apps/imaging", "apps/run"}},
+        {"apps/study", {"meshing", "formfactor", "solver", "apps/imaging", "apps/run", "apps/verification"}},
         {"apps/report", {"meshing", "formfactor", "solver", "apps/imaging", "apps/run", "apps/study"}},
         {"apps/python", {"meshing", "formfactor", "solver", "apps"}},
         {"apps/patchlight", {"meshing", "formfactor", "solver", "apps"}},
