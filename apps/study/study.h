@@ -53,6 +53,9 @@ enum class ReferenceKind {
     furnace       ///< closed form of a closed room that emits and reflects alike all over: B = E/(1 − ρ)
 };
 
+/// As a study file has it.
+std::string name_of(ReferenceKind kind);
+
 struct StudyReference {
     ReferenceKind kind = ReferenceKind::none;
     std::size_t points = 2000;        ///< area-uniform over all reflecting surface; not of ReferenceKind::points
