@@ -86,9 +86,13 @@ void work_through(std::list<StudyJob> jobs, std::size_t at_once, const std::stop
 
 std::string error_in(const std::string& said)
 {
-    const std::size_t begin = said.rfind("error[");
-    if (begin == std::string::npos || (begin > 0 && said[begin - 1] != '\n')) return {};
-    return said.substr(begin, said.find('\n', begin) - begin);
+    constexpr std::string_view mark = "error[";
+    const std::size_t begin = said.rfind(mark);
+    const std::size_t close = said.find("]: ", begin);
+    if (begin == std::string::npos || close == std::string::npos) return {};
+    const std::string kind = said.substr(begin + mark.size(), close - begin - mark.size());
+    const std::size_t text = close + 1;  // from the colon on
+    return kind + said.substr(text, said.find('\n', text) - text);
 }
 
 }  // namespace patchlight

@@ -34,7 +34,7 @@ void work_through(std::list<StudyJob> jobs, std::size_t at_once, const std::stop
                   const std::function<void(const StudyJob&)>& on_begin,
                   const std::function<void(const StudyJob&, const StudyJobEnd&)>& on_end);
 
-/// The error in what a program said, `error[kind]: …`; empty where there is none.
+/// The last error in what a program said, as `kind: …`; empty where there is none.
 std::string error_in(const std::string& said);
 
 }  // namespace patchlight
