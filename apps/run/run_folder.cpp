@@ -110,9 +110,10 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
     }
     const bool finished =
         stored.record.status == RunStatus::finished || stored.record.status == RunStatus::not_converged;
-    if (!finished && (stored.version != tool_version() || stored.commit != tool_commit())) {
+    if (!finished && stored.numeric != numeric_version()) {
         throw FolderRefused(
-            fmt::format("{} holds an unfinished run of patchlight {} ({}), this is {} ({}); name a new folder",
+            fmt::format("{} holds an unfinished run of patchlight {} ({}), and this one, {} ({}), may compute other "
+                        "numbers; name a new folder",
                         folder_.string(), stored.version, stored.commit, tool_version(), tool_commit()));
     }
     state_ = finished ? FolderState::finished : FolderState::unfinished;
