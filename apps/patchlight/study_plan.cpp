@@ -164,7 +164,8 @@ StudyPlan StudyPlanner::plan()
     std::exception_ptr first;
     bool any = false;
     for (const StudyCell& cell : cells_) {
-        PlannedCell planned{.cell = cell};
+        PlannedCell planned;
+        planned.cell = cell;
         try {
             planned.id = run_id(solve_of(cell).identity);
             planned.reference = reference_of(cell).id;

@@ -30,7 +30,8 @@ std::optional<CellOutcome> outcome_of(const StudyFolder& folder, const std::stri
 
 Measures measures_of(const StudyPlan& plan)
 {
-    Measures measures{.seed = plan.seed};
+    Measures measures;
+    measures.seed = plan.seed;
     if (plan.study.probes.empty()) return measures;
     std::string text;
     try {
@@ -99,7 +100,10 @@ CellStatus status_of(RunStatus status)
 CellResult result_of(const PlannedCell& planned, const StudyFolder& folder, const Measures& measures,
                      FileWriter* writer, const std::stop_token& stop)
 {
-    CellResult result{.cell = planned.cell, .id = planned.id, .message = planned.problem};
+    CellResult result;
+    result.cell = planned.cell;
+    result.id = planned.id;
+    result.message = planned.problem;
     if (!planned.problem.empty()) {
         result.status = CellStatus::failed;
         return result;

@@ -14,8 +14,8 @@ namespace patchlight {
 
 /// What a cell is held to, and what is asked of it.
 struct Measures {
-    std::string reference;                      ///< its folder's name; empty: none
-    const std::vector<ReferencePoint>* points;  ///< null: no reference, or one that isn't done
+    std::string reference;                                ///< its folder's name; empty: none
+    const std::vector<ReferencePoint>* points = nullptr;  ///< null: no reference, or one that isn't done
     std::vector<ProbePoint> probes;
     std::string probes_sha256;  ///< of their file
     std::uint64_t seed = 1;     ///< of intervals

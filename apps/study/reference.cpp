@@ -43,7 +43,8 @@ std::string lit_digest(const Scene& scene)
 Json reference_key(const StudyReference& reference, const Scene& scene, std::uint64_t seed, const Json& source)
 {
     const bool drawn = reference.kind != ReferenceKind::points;
-    return {{"kind", name_of(reference.kind)},
+    return {{"format", 1},
+            {"kind", name_of(reference.kind)},
             {"scene", lit_digest(scene)},
             {"points", drawn ? Json(reference.points) : Json()},
             {"paths", reference.kind == ReferenceKind::path_traced ? Json(reference.paths) : Json()},
