@@ -203,10 +203,9 @@ struct PrintCommand {
     std::string text;
 };
 
-using Command =
-    std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand, VerifyCommand,
-                 FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand, ReportCommand,
-                 StudyCellCommand, StudyRunCommand, PrintCommand>;
+using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
+                             VerifyCommand, FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand,
+                             ReportCommand, StudyCellCommand, StudyRunCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

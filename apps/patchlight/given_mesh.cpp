@@ -21,15 +21,14 @@ StoredSolution solution_of_surfaces(const std::string& run, const Scene& scene, 
     StoredSolution stored = solution_of(open_run(run), {});
     const auto& theirs = stored.scene.surfaces;
     if (theirs.size() != scene.surfaces.size()) {
-        throw UsageError(code, fmt::format("{}: {} has {} surfaces and the scene {}; give the run's own scene",
-                                            asked, run, theirs.size(), scene.surfaces.size()));
+        throw UsageError(code, fmt::format("{}: {} has {} surfaces and the scene {}; give the run's own scene", asked,
+                                           run, theirs.size(), scene.surfaces.size()));
     }
     for (std::size_t s = 0; s < theirs.size(); ++s) {
         if (stored.scene.vertices != scene.vertices || !alike(theirs[s], scene.surfaces[s])) {
-            throw UsageError(code,
-                             fmt::format("{}: surface {} of {} is not the scene's; give the run's own scene "
-                                         "and unit, only materials may differ",
-                                         asked, s, run));
+            throw UsageError(code, fmt::format("{}: surface {} of {} is not the scene's; give the run's own scene "
+                                               "and unit, only materials may differ",
+                                               asked, s, run));
         }
     }
     return stored;

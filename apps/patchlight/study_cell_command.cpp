@@ -95,8 +95,8 @@ std::vector<ReferencePoint> found_reference(const StudyPlanner& planner, const S
     return {};
 }
 
-int make_reference(StudyPlanner& planner, const PlannedReference& planned, StudyScene& scene,
-                   const StudyFolder& folder, Session& session)
+int make_reference(StudyPlanner& planner, const PlannedReference& planned, StudyScene& scene, const StudyFolder& folder,
+                   Session& session)
 {
     const std::filesystem::path own = folder.reference(planned.id);
     FileWriter::make_folder(own);

@@ -53,7 +53,7 @@ StudyFolder study_folder(const std::string& study_file, const std::string& given
 
 void refuse_foreign(const StudyFolder& folder)
 {
-    constexpr std::array<std::string_view, 9> ours{"study.toml", "study.json", "table.md",   "table.csv",  "timing.json",
+    constexpr std::array<std::string_view, 9> ours{"study.toml", "study.json", "table.md", "table.csv",  "timing.json",
                                                    "cells",      "references", "pictures", "report.html"};
     const std::filesystem::path& root = folder.root;
     std::error_code error;
@@ -93,7 +93,7 @@ SolveCommand StudyPlanner::command_of(const StudyCell& cell) const
 {
     std::vector<OptionText> options = cell.options;
     if (!study_.limits.memory.empty() && find(options, "memory") == nullptr) {
-        options.push_back({"memory", study_.limits.memory, {}});
+        options.push_back({"memory", study_.limits.memory, study_.limits.memory_place});
     }
     return solve_command_of(cell.scene, "run", options, study_.file);
 }
@@ -101,7 +101,8 @@ SolveCommand StudyPlanner::command_of(const StudyCell& cell) const
 SolveCommand StudyPlanner::reference_command_of(const StudyCell& cell) const
 {
     std::vector<OptionText> options = reference_options(study_);
-    std::erase_if(options, [](const OptionText& o) { return std::ranges::find(scene_options, o.name) != scene_options.end(); });
+    std::erase_if(options,
+                  [](const OptionText& o) { return std::ranges::find(scene_options, o.name) != scene_options.end(); });
     for (const OptionText& option : cell.options) {
         if (std::ranges::find(scene_options, option.name) != scene_options.end()) options.push_back(option);
     }

@@ -30,7 +30,8 @@ bool has_references(const StudyPlan& plan, const StudyFolder& folder)
 {
     std::error_code error;
     return std::ranges::all_of(plan.cells, [&](const PlannedCell& cell) {
-        return cell.reference.empty() || std::filesystem::exists(folder.reference(cell.reference) / "reference.json", error);
+        return cell.reference.empty() ||
+               std::filesystem::exists(folder.reference(cell.reference) / "reference.json", error);
     });
 }
 
@@ -109,7 +110,8 @@ private:
     void show()
     {
         if (done_ == jobs_) return display_.clear();
-        display_.show({.stage = "cells", .cycle = -1, .fraction = static_cast<double>(done_) / static_cast<double>(jobs_)});
+        display_.show(
+            {.stage = "cells", .cycle = -1, .fraction = static_cast<double>(done_) / static_cast<double>(jobs_)});
     }
 
     std::string found(const std::string& id) const

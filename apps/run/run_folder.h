@@ -39,8 +39,8 @@ class RunFolder {
 public:
     /// Looks at `folder` and makes it when it isn't there. Entries named in `also_ours` don't make it foreign.
     /// Throws FolderRefused when it holds anything but a run, a run of another scene or with other options, an
-    /// unfinished run of a program with another numeric version, or when another program is writing it; OutputError when
-    /// it can't be made or written.
+    /// unfinished run of a program with another numeric version, or when another program is writing it; OutputError
+    /// when it can't be made or written.
     RunFolder(std::filesystem::path folder, RunIdentity identity, FileWriter& writer,
               const std::vector<std::string>& also_ours = {});
     RunFolder(const RunFolder&) = delete;

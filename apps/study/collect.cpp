@@ -113,8 +113,7 @@ CellResult result_of(const PlannedCell& planned, const StudyFolder& folder, cons
         try {
             const OpenedRun run = open_run(folder.run(planned.id));
             result.status = status_of(run.record.status);
-            const Measured found =
-                measured(run, measures, folder.cell(planned.id) / "measured.json", writer, stop);
+            const Measured found = measured(run, measures, folder.cell(planned.id) / "measured.json", writer, stop);
             result.cycles = cycles_of(run, found);
             result.probes = found.probes;
         } catch (const SceneError& problem) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "apps/run/file_writer.h"
 #include "apps/run/probing.h"
 #include "apps/run/run_options.h"
 #include "apps/run/stored_solution.h"
@@ -8,14 +9,13 @@
 #include "apps/verification/surface_sampler.h"
 #include "formfactor/ray_caster.h"
 
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 namespace patchlight {
-
-class FileWriter;
 
 /// A point of a surface and the light there that solutions are held to.
 struct ReferencePoint {

@@ -56,10 +56,11 @@ void write_reference(const std::filesystem::path& folder, const Json& key, const
     // One row a point, for readers' sake.
     std::string rows;
     for (const Json& row : json_of(points)) rows += (rows.empty() ? "  " : ",\n  ") + row.dump();
-    writer.write(folder / "reference.json",
-                 fmt::format("{{\"schema\": \"{}\",\n \"key\": {},\n \"columns\": [\"surface\", \"x\", \"y\", \"z\", "
-                             "\"Br-Er\", \"Bg-Eg\", \"Bb-Eb\", \"var_r\", \"var_g\", \"var_b\"],\n \"points\": [\n{}]}}\n",
-                             schema, key.dump(), rows));
+    writer.write(
+        folder / "reference.json",
+        fmt::format("{{\"schema\": \"{}\",\n \"key\": {},\n \"columns\": [\"surface\", \"x\", \"y\", \"z\", "
+                    "\"Br-Er\", \"Bg-Eg\", \"Bb-Eb\", \"var_r\", \"var_g\", \"var_b\"],\n \"points\": [\n{}]}}\n",
+                    schema, key.dump(), rows));
 }
 
 std::optional<std::vector<ReferencePoint>> read_reference(const std::filesystem::path& folder)

@@ -29,7 +29,7 @@ def kill_group(process):
 
 class KilledStudies(unittest.TestCase):
     def test_twenty_kills_leave_no_trace(self):
-        study = StudyFolder(STUDY)
+        study = StudyFolder(self, STUDY)
         begin = time.monotonic()
         study.run("--quiet", output="whole")
         seconds = time.monotonic() - begin
@@ -60,13 +60,13 @@ class KilledStudies(unittest.TestCase):
         self.seen = before
 
     def test_two_jobs_give_the_bytes_of_one(self):
-        study = StudyFolder(STUDY)
+        study = StudyFolder(self, STUDY)
         study.run("--quiet", output="one")
         study.run("--quiet", "--jobs", 2, output="two")
         self.assertEqual(differing(study.files("one"), study.files("two")), [])
 
     def test_interrupt_ends_within_a_second_and_keeps_all(self):
-        study = StudyFolder(STUDY)
+        study = StudyFolder(self, STUDY)
         process = study.start("--quiet", "--jobs", 2)
         time.sleep(1.5)
         os.killpg(process.pid, signal.SIGINT)
@@ -80,7 +80,7 @@ class KilledStudies(unittest.TestCase):
         self.assertLessEqual(before.items(), study.cycles().items())
 
     def test_children_of_a_killed_run_stop_and_the_next_run_waits_for_them(self):
-        study = StudyFolder(STUDY)
+        study = StudyFolder(self, STUDY)
         process = study.start("--quiet")
         time.sleep(1.0)
         process.kill()  # the parent alone
@@ -90,7 +90,7 @@ class KilledStudies(unittest.TestCase):
         self.assertEqual(differing(study.files("whole"), study.files()), [])
 
     def test_a_second_run_says_who_is_there(self):
-        study = StudyFolder(STUDY)
+        study = StudyFolder(self, STUDY)
         first = study.start("--quiet")
         deadline = time.monotonic() + 20
         while not (study.folder / "out/cells").exists() and time.monotonic() < deadline:

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -16,10 +17,10 @@ FURNACE = SOURCE / "data/scenes/furnace.obj"
 class StudyFolder:
     """A study file in a folder of its own, and what is run of it."""
 
-    def __init__(self, text, name="study.toml"):
-        self.holder = tempfile.TemporaryDirectory(prefix="patchlight-study-")
-        self.folder = Path(self.holder.name)
-        self.file = self.folder / name
+    def __init__(self, test, text):
+        self.folder = Path(tempfile.mkdtemp(prefix="patchlight-study-"))
+        test.addCleanup(shutil.rmtree, self.folder)
+        self.file = self.folder / "study.toml"
         self.write(text)
 
     def write(self, text):
