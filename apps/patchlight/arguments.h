@@ -179,6 +179,25 @@ struct ReportCommand {
     bool json = false;
 };
 
+struct StudyCellCommand {
+    std::string study;
+    std::string folder;                ///< empty: STEM-study in the working directory
+    std::optional<std::size_t> index;  ///< in the whole grid; unset: the reference
+    bool reference = false;
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+
+struct StudyRunCommand {
+    std::string study;
+    std::string folder;    ///< as StudyCellCommand's
+    std::size_t jobs = 1;  ///< at once
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;  ///< of all jobs together
+};
+
 /// What only prints: --help and --version.
 struct PrintCommand {
     std::string text;
@@ -186,7 +205,8 @@ struct PrintCommand {
 
 using Command =
     std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand, VerifyCommand,
-                 FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand, ReportCommand, PrintCommand>;
+                 FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand, ReportCommand,
+                 StudyCellCommand, StudyRunCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

@@ -1,18 +1,13 @@
-#include "apps/imaging/view_rays.h"
 #include "apps/patchlight/before_after_table.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
-#include "apps/patchlight/given_mesh.h"
-#include "apps/patchlight/scene_input.h"
+#include "apps/patchlight/planned_solve.h"
 #include "apps/patchlight/solve_run.h"
-#include "apps/patchlight/usage_error.h"
-#include "apps/patchlight/view_choice.h"
 #include "apps/report/report_page.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <limits>
 #include <optional>
 #include <system_error>
 
@@ -33,30 +28,6 @@ std::vector<std::string> gather_warnings(const SceneInput& input, const RayCaste
         session.messages.warning(warning);
     }
     return warnings;
-}
-
-/// What a camera sees, through the pixels of a small picture of it.
-std::vector<SurfacePoint> seen_points(const Scene& scene, const RayCaster& caster, const View& view)
-{
-    constexpr int height = 120;
-    const int width = picture_size(std::nullopt, view).first * height / picture_size(std::nullopt, view).second;
-    const ViewRays camera(view, width, height);
-    RayBatch rays;
-    HitBatch hits;
-    rays.resize(static_cast<std::size_t>(width) * height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            rays.set(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x),
-                     camera.from(), camera.direction(x + 0.5, y + 0.5), std::numeric_limits<float>::infinity());
-    caster.closest(rays, hits);
-    std::vector<SurfacePoint> points;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (hits.surface[i] >= HitBatch::black_back) continue;
-        const SurfaceId surface(hits.surface[i]);
-        const Vec3 place = scene.surface(surface).frame.lift(Vec2(hits.x[i], hits.y[i]));
-        points.push_back({place, surface, place});
-    }
-    return points;
 }
 
 std::string summary_of(const RunFolder& folder)
@@ -136,39 +107,15 @@ void open_folder(std::optional<RunFolder>& folder, const SolveCommand& command, 
 
 }  // namespace
 
-int run_command(const SolveCommand& given, Session& session)
+int solve_planned(const PlannedSolve& plan, const SceneInput& input, const RayCaster& caster, Session& session)
 {
-    SolveCommand command = given;
-    session.messages.set_quiet(command.quiet);
-    std::optional<tbb::global_control> threads;
-    if (command.threads > 0) {
-        threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(command.threads));
-    }
-    SceneInput input = load_scene(command.scene);
-    session.interruption.check();
-    if (!command.mesh_of.empty()) {
-        GivenMesh given_mesh = mesh_of_run(command.mesh_of, input.scene);
-        command.mesh_sha256 = given_mesh.sha256;
-        command.options.max_elements = command.options.meshing.max_elements = given_mesh.arrays.triangles.size();
-        command.options.mesh = std::move(given_mesh.arrays);
-    }
+    const SolveCommand& command = plan.command;
     check_memory(input.scene, command.options, command.memory);
-    const RayCaster caster(input.scene);
-    const View view = command.pictures.pictures ? chosen_view(command.scene.view, input.scene, caster) : View{};
-    if (command.pictures.pictures) {
-        // Stored first: `render` without --view shows what the run's own pictures show.
-        std::erase_if(input.scene.views, [&](const View& other) { return other.name == view.name; });
-        input.scene.views.insert(input.scene.views.begin(), view);
-    }
-    if (!command.for_view.empty()) {
-        command.goal = chosen_view(command.for_view, input.scene, caster);
-        command.options.looked_at = seen_points(input.scene, caster, *command.goal);
-    }
     const std::vector<std::string> warnings = gather_warnings(input, caster, session);
     session.interruption.check();
 
     std::optional<RunFolder> folder;
-    open_folder(folder, command, identity_of(input, command, view), session);
+    open_folder(folder, command, plan.identity, session);
     if (folder->state() == FolderState::finished) {
         session.messages.note(fmt::format("{}: this run is finished already", command.run));
         write_demo_report(command, session);
@@ -184,9 +131,24 @@ int run_command(const SolveCommand& given, Session& session)
         Interruption& interruption;
         ~Unhook() { interruption.on_deadline({}); }
     } const unhook{session.interruption};
-    SolveRun(input, caster, view, command, *folder, session).go();
+    SolveRun(input, caster, plan.view, command, *folder, session).go();
     write_demo_report(command, session);
     return report(*folder, command, session);
+}
+
+int run_command(const SolveCommand& command, Session& session)
+{
+    session.messages.set_quiet(command.quiet);
+    std::optional<tbb::global_control> threads;
+    if (command.threads > 0) {
+        threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(command.threads));
+    }
+    SceneInput input = load_scene(command.scene);
+    session.interruption.check();
+    const RayCaster caster(input.scene);
+    const PlannedSolve plan = plan_solve(command, input, caster);
+    session.interruption.check();
+    return solve_planned(plan, input, caster, session);
 }
 
 }  // namespace patchlight

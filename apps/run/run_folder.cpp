@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 
 namespace patchlight {
@@ -46,14 +47,19 @@ const std::filesystem::path& made(const std::filesystem::path& folder)
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
+FolderLock::FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
 {
     if (descriptor_ < 0) {
         throw OutputError(fmt::format("{}: {}", folder.string(), std::generic_category().message(errno)));
     }
     // Not every file system can lock; then two programs at once are the user's own affair.
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        if (std::chrono::steady_clock::now() < deadline) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            continue;
+        }
         ::close(descriptor_);
         throw FolderRefused(fmt::format("{} is being written by another patchlight", folder.string()));
     }
@@ -104,9 +110,10 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
     }
     const bool finished =
         stored.record.status == RunStatus::finished || stored.record.status == RunStatus::not_converged;
-    if (!finished && (stored.version != tool_version() || stored.commit != tool_commit())) {
+    if (!finished && stored.numeric != numeric_version()) {
         throw FolderRefused(
-            fmt::format("{} holds an unfinished run of patchlight {} ({}), this is {} ({}); name a new folder",
+            fmt::format("{} holds an unfinished run of patchlight {} ({}), and this one, {} ({}), may compute other "
+                        "numbers; name a new folder",
                         folder_.string(), stored.version, stored.commit, tool_version(), tool_commit()));
     }
     state_ = finished ? FolderState::finished : FolderState::unfinished;

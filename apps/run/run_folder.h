@@ -4,6 +4,7 @@
 #include "apps/run/run_record.h"
 #include "apps/run/stored_solution.h"
 
+#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -20,8 +21,9 @@ public:
 /// Keeps other programs out of a folder while it lives. Leaves no file behind.
 class FolderLock {
 public:
-    /// Throws FolderRefused when another program holds it, OutputError when the folder can't be opened.
-    explicit FolderLock(const std::filesystem::path& folder);
+    /// Throws FolderRefused when another program holds it and doesn't let go in time, OutputError when the folder can't
+    /// be opened.
+    explicit FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience = {});
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
     ~FolderLock();
@@ -37,7 +39,7 @@ class RunFolder {
 public:
     /// Looks at `folder` and makes it when it isn't there. Entries named in `also_ours` don't make it foreign.
     /// Throws FolderRefused when it holds anything but a run, a run of another scene or with other options, an
-    /// unfinished run of another version of the program, or when another program is writing it; OutputError when
+    /// unfinished run of a program with another numeric version, or when another program is writing it; OutputError when
     /// it can't be made or written.
     RunFolder(std::filesystem::path folder, RunIdentity identity, FileWriter& writer,
               const std::vector<std::string>& also_ours = {});

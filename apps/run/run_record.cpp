@@ -187,7 +187,11 @@ Json json_of(const RunRecord& record)
         energy = json_of(last.energy);
     }
     return {{"schema", schema},
-            {"tool", {{"name", "patchlight"}, {"version", tool_version()}, {"commit", tool_commit()}}},
+            {"tool",
+             {{"name", "patchlight"},
+              {"version", tool_version()},
+              {"commit", tool_commit()},
+              {"numeric", numeric_version()}}},
             {"scene",
              {{"file", as_utf8(id.scene_file)},
               {"sha256", id.scene_sha256},
@@ -233,6 +237,7 @@ StoredRecord run_record_in(const std::string& text)
         stored.record.converged = json.at("result").is_object() && json.at("result").at("converged").get<bool>();
         stored.version = json.at("tool").at("version").get<std::string>();
         stored.commit = json.at("tool").at("commit").get<std::string>();
+        stored.numeric = json.at("tool").value("numeric", "");
         return stored;
     });
 }

@@ -65,12 +65,18 @@ struct RunRecord {
 std::string tool_version();
 std::string tool_commit();
 
+/// Tells programs apart that may compute other numbers: 16 hexadecimal digits of the SHA-256 of the sources of meshing,
+/// formfactor, solver and apps/run. Another commit that leaves these alone has the same. Compiler, flags and libraries
+/// are not in it.
+std::string numeric_version();
+
 Json json_of(const RunRecord& record);
 
 /// A run.json read back: the record, and who wrote it. Throws SceneError ("run").
 struct StoredRecord {
     RunRecord record;
     std::string version, commit;
+    std::string numeric;  ///< empty: of a program that wrote none
 };
 StoredRecord run_record_in(const std::string& text);
 
