@@ -30,6 +30,11 @@ function makeSortable(made) {
   });
 }
 
+/// Texts stand at the left, numbers at the right. Columns from 0.
+function leftAlign(made, columns) {
+  for (const row of made.rows) for (const column of columns) row.cells[column].classList.add('text');
+}
+
 /// The rate from the cell before in the same series, by cell.
 function localRates(table) {
   const rates = new Map();
@@ -41,21 +46,23 @@ function localRates(table) {
 export function showCells(table) {
   const measured = table.error === 'measured', rates = localRates(table);
   const timed = table.cells.some(({ result }) => result?.seconds > 0);
-  const heads = ['Cell', ...table.axes, 'Elements', 'Cycles', 'Estimated error, %',
-    ...(measured ? ['Error, %', '95 %', 'Max, %'] : []), 'Rate', 'Energy residual', ...(timed ? ['Seconds'] : []), 'Status'];
+  const heads = ['Cell', ...table.axes, 'Status', 'Elements', 'Cycles', 'Estimated error, %',
+    ...(measured ? ['Error, %', '95 %', 'Max, %'] : []), 'Rate', 'Energy residual', ...(timed ? ['Seconds'] : [])];
   const rows = table.cells.map(({ index, values, result, cycles, status, message }) => {
     const rate = rates.get(index) ?? null;
     const range = result?.error_ci ? result.error_ci.map((bound) => significant(100 * bound, 3)).join(' – ') : '–';
     const value = (name) => ({ text: values[name], exact: values[name] });
     const has = (made) => (result ? made(result) : { text: '–', exact: '' });
-    return [String(index), ...table.axes.map(value), has((r) => number(r.elements, 15)), has(() => number(cycles.length, 15)),
+    return [String(index), ...table.axes.map(value), message ? `${status}: ${message}` : status,
+      has((r) => number(r.elements, 15)), has(() => number(cycles.length, 15)),
       has((r) => share(r.estimated_error)), ...(measured ? [share(result?.error), range, share(result?.max_error)] : []),
       rate === null ? { text: '–', exact: '' } : { text: rate.toFixed(2).replace('-', '−'), exact: rate },
-      has((r) => number(r.energy_residual, 2)), ...(timed ? [has((r) => number(r.seconds, 3))] : []),
-      message ? `${status}: ${message}` : status];
+      has((r) => number(r.energy_residual, 2)), ...(timed ? [has((r) => number(r.seconds, 3))] : [])];
   });
   const made = tableOf(rows, heads);
   makeSortable(made);
+  const isText = (axis) => table.cells.some(({ values }) => Number.isNaN(Number(values[axis])));
+  leftAlign(made, [...table.axes.flatMap((axis, a) => (isText(axis) ? [1 + a] : [])), 1 + table.axes.length]);
   byId('cells').append(made);
 }
 
@@ -95,6 +102,7 @@ export function showGates(table) {
   const rows = table.gates.map(({ gate, of, value, bound, passed, message }) => [
     gate, of, value === null ? '–' : number(value, 4), number(bound, 6), passed ? 'passed' : 'FAILED', message]);
   const made = tableOf(rows, ['Gate', 'Of', 'Value', 'Bound', 'Verdict', 'Note']);
+  leftAlign(made, [1, 4, 5]);
   [...made.tBodies[0].rows].forEach((row, i) => row.cells[4].classList.add(table.gates[i].passed ? 'good' : 'bad'));
   byId('gates').append(made);
 }
@@ -110,5 +118,7 @@ export function showProvenance({ tool, study_sha256: study, seed, reference, tab
   for (const [hash, name] of scenes) rows.push([`SHA-256 of ${name}`, hash]);
   byId('source').append(tableOf(rows));
   const origins = table.cells.map(({ index, name, id, origin }) => [String(index), name, id || '–', origin?.solution_sha256 || '–']);
-  byId('origins').append(tableOf(origins, ['Cell', 'Name', 'Folder, cells/', 'SHA-256 of the solution']));
+  const made = tableOf(origins, ['Cell', 'Name', 'Folder, cells/', 'SHA-256 of the solution']);
+  leftAlign(made, [1, 2, 3]);
+  byId('origins').append(made);
 }
