@@ -169,6 +169,7 @@ struct VerifyCommand {
     std::uint32_t most_paths = 4096;  ///< from each point
     std::uint64_t seed = 1;
     bool files_only = false;
+    bool traces_study = false;  ///< --points was given: a study's cells are path-traced, too
     bool quiet = false;
     bool json = false;
     int threads = 0;
