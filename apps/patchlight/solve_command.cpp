@@ -1,6 +1,7 @@
 #include "apps/patchlight/before_after_table.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
+#include "apps/patchlight/kept_factors.h"
 #include "apps/patchlight/planned_solve.h"
 #include "apps/patchlight/solve_run.h"
 #include "apps/report/report_page.h"
@@ -111,6 +112,7 @@ int solve_planned(const PlannedSolve& plan, const SceneInput& input, const RayCa
 {
     const SolveCommand& command = plan.command;
     check_memory(input.scene, command.options, command.memory);
+    check_factors_fit(command, input.scene, session);
     const std::vector<std::string> warnings = gather_warnings(input, caster, session);
     session.interruption.check();
 
@@ -122,16 +124,8 @@ int solve_planned(const PlannedSolve& plan, const SceneInput& input, const RayCa
         report(*folder, command, session);
         return 0;
     }
-    folder->set_warnings(warnings);
-    session.interruption.on_deadline([&] {
-        folder->interrupt();
-        session.writer.abandon();
-    });
-    struct Unhook {
-        Interruption& interruption;
-        ~Unhook() { interruption.on_deadline({}); }
-    } const unhook{session.interruption};
-    SolveRun(input, caster, plan.view, command, *folder, session).go();
+    solve_into(*folder, input, caster, plan.view, command, warnings, session,
+               factors_of_run(command, input.scene, caster, session));
     write_demo_report(command, session);
     return report(*folder, command, session);
 }

@@ -1,8 +1,10 @@
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/progress_display.h"
 #include "apps/patchlight/study_jobs.h"
+#include "apps/patchlight/study_outputs.h"
 #include "apps/patchlight/study_plan.h"
 #include "apps/study/study_json.h"
+#include "apps/study/tables.h"
 
 #include <fmt/format.h>
 #include <tbb/info.h>
@@ -144,21 +146,6 @@ std::size_t name_failures(const StudyResult& result, const Session& session)
     return count;
 }
 
-std::string summary_of(const StudyResult& result, const StudyFolder& folder)
-{
-    std::string out;
-    for (const CellResult& cell : result.cells) {
-        out += fmt::format("{:<40} {:<14}", cell.cell.name, name_of(cell.status));
-        if (!cell.cycles.empty()) {
-            const CycleResult& last = cell.cycles.back();
-            out += fmt::format(" {:>7} elements  estimated {:.3g} %", last.elements, 100 * last.estimated_error);
-            if (last.error) out += fmt::format("  error {:.3g} %", 100 * *last.error);
-        }
-        out += "\n";
-    }
-    return out + fmt::format("wrote   {}\n", (folder.root / "study.json").string());
-}
-
 }  // namespace
 
 int run_command(const StudyRunCommand& command, Session& session)
@@ -183,8 +170,10 @@ int run_command(const StudyRunCommand& command, Session& session)
     const std::string json = study_json(plan, result);
     session.writer.write(folder.root / "study.json", json);
     session.writer.write(folder.root / "timing.json", study_timing_json(result));
-    write_result(command.json ? json : summary_of(result, folder));
-    return name_failures(result, session) > 0 || progress.failed_reference() ? 4 : 0;
+    write_study_outputs(plan.study.pictures, result, folder, session);
+    write_result(command.json ? json : table_text(result));
+    const std::size_t failures = name_failures(result, session) + name_failed_gates(result, session);
+    return failures > 0 || progress.failed_reference() ? 4 : 0;
 }
 
 }  // namespace patchlight

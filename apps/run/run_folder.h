@@ -32,6 +32,9 @@ private:
     int descriptor_ = -1;
 };
 
+/// Where the files of a cycle are in the folder of its run.
+std::string cycle_folder(int cycle);
+
 enum class FolderState { fresh, unfinished, finished };
 
 /// The folder of one run: knows what is in it, writes it, and keeps other programs out while it is open.
@@ -53,9 +56,9 @@ public:
     Json timing() const { return timing_; }
 
     /// Where a cycle's files are.
-    std::filesystem::path cycle_folder(int cycle) const;
+    std::filesystem::path cycle_folder(int cycle) const { return folder_ / patchlight::cycle_folder(cycle); }
 
-    /// Writes a file of the run. Throws OutputError.
+    /// Writes a file of the run, whose digest run.json will name. Throws OutputError.
     void write(const std::string& name, std::string_view bytes);
     void write_in_cycle(int cycle, const std::string& name, std::string_view bytes);
 

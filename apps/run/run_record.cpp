@@ -205,6 +205,7 @@ Json json_of(const RunRecord& record)
             {"cycles", cycles},
             {"result", result},
             {"energy", energy},
+            {"files", record.files},
             {"status", name_of(record.status)}};
 }
 
@@ -232,6 +233,10 @@ StoredRecord run_record_in(const std::string& text)
         stored.record.warnings = json.at("warnings").get<std::vector<std::string>>();
         for (const Json& cycle : json.at("cycles")) {
             stored.record.cycles.push_back(cycle_in(cycle));
+        }
+        // Runs of the versions before have none.
+        if (json.contains("files")) {
+            stored.record.files = json.at("files").get<std::map<std::string, std::string>>();
         }
         stored.record.status = status_in(json.at("status").get<std::string>());
         stored.record.converged = json.at("result").is_object() && json.at("result").at("converged").get<bool>();

@@ -3,6 +3,7 @@
 #include "apps/run/run_options.h"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct RunRecord {
     RunIdentity identity;
     std::vector<std::string> warnings;
     std::vector<CycleRecord> cycles;
+    /// SHA-256 of each file by its path in the folder, but not of run.json, of timing.json, which differs from machine
+    /// to machine, and of stored factors, which hold their own.
+    std::map<std::string, std::string> files;
     RunStatus status = RunStatus::running;
     bool converged = false;
 };
