@@ -32,6 +32,7 @@ int run_command(const StudyCellCommand& command, Session& session);
 int run_command(const StudyRunCommand& command, Session& session);
 int run_command(const StudyTableCommand& command, Session& session);
 int run_command(const StudyReportCommand& command, Session& session);
+int run_command(const StudyCheckCommand& command, Session& session);
 int run_command(const PrintCommand& command, Session& session);
 
 }  // namespace patchlight

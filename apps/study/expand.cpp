@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace patchlight {
@@ -89,6 +90,15 @@ std::vector<OptionText> reference_options(const Study& study)
 {
     std::vector<OptionText> options = study.options;
     for (const OptionText& option : study.reference.options) put(options, option);
+    return options;
+}
+
+std::vector<OptionText> reference_options(const Study& study, const StudyCell& cell)
+{
+    static constexpr std::array<std::string_view, 4> of_scene{"unit", "two-sided", "emitter", "max-reflectance"};
+    std::vector<OptionText> options = reference_options(study);
+    for (const OptionText& option : cell.options)
+        if (std::ranges::find(of_scene, option.name) != of_scene.end()) put(options, option);
     return options;
 }
 

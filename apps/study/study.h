@@ -134,6 +134,9 @@ struct StudyCell {
 /// refuses on its own those that are its own business.
 using OptionNames = std::vector<std::string>;
 
+/// The text of a study or configuration file. Throws StudyError for what can't be read and for more than a megabyte.
+std::string text_of_study(const std::filesystem::path& file);
+
 /// Reads a study. Throws StudyError with file, line and column for what isn't TOML, an unknown key ("did you mean"), a
 /// value of another type or outside its range, an axis without values, a name that is varied twice. What options mean
 /// is not looked at, nor whether files exist.
@@ -152,5 +155,7 @@ std::vector<StudyCell> expand(const Study& study);
 
 /// The options of the reference solution of a scene: the base's with the reference's over them, each name once.
 std::vector<OptionText> reference_options(const Study& study);
+/// Those of the reference that a cell is held to: what the cell's scene is, its unit, lamps and sides, is the cell's.
+std::vector<OptionText> reference_options(const Study& study, const StudyCell& cell);
 
 }  // namespace patchlight

@@ -54,14 +54,12 @@ bool all_of_is(std::string_view text, Number& number)
     return error == std::errc() && end == text.data() + text.size();
 }
 
-const std::vector<std::pair<std::string, ReferenceKind>>& reference_words()
+std::vector<std::pair<std::string, ReferenceKind>> reference_words()
 {
-    static const std::vector<std::pair<std::string, ReferenceKind>> words{{"path-traced", ReferenceKind::path_traced},
-                                                                          {"solution", ReferenceKind::solution},
-                                                                          {"run", ReferenceKind::run},
-                                                                          {"points", ReferenceKind::points},
-                                                                          {"furnace", ReferenceKind::furnace},
-                                                                          {"none", ReferenceKind::none}};
+    using enum ReferenceKind;
+    std::vector<std::pair<std::string, ReferenceKind>> words;
+    for (const ReferenceKind kind : {path_traced, solution, run, points, furnace, none})
+        words.emplace_back(name_of(kind), kind);
     return words;
 }
 

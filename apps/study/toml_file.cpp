@@ -7,8 +7,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <fstream>
 #include <set>
+#include <system_error>
 #include <tuple>
 
 namespace patchlight {
@@ -41,7 +44,26 @@ std::string_view kind_of(const toml::node& value)
     }
 }
 
+std::string too_large(const std::filesystem::path& file)
+{
+    return fmt::format("{}: more than {} bytes, too many for such a file", file.string(), largest_file);
+}
+
 }  // namespace
+
+std::string text_of_study(const std::filesystem::path& file)
+{
+    errno = 0;
+    std::ifstream in(file, std::ios::binary);
+    std::string text(largest_file + 1, '\0');
+    if (!in.read(text.data(), static_cast<std::streamsize>(text.size())) && !in.eof()) {
+        const std::string reason = std::generic_category().message(errno != 0 ? errno : EIO);
+        throw StudyError(fmt::format("{}: {}", file.string(), reason));
+    }
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (text.size() > largest_file) throw StudyError(too_large(file));
+    return text;
+}
 
 TextPlace TomlEntry::value_place() const
 {
@@ -56,9 +78,7 @@ void TomlFile::refuse(const TextPlace& place, const std::string& cause) const
 
 TomlFile::TomlFile(std::string_view text, const std::filesystem::path& file) : file_(file)
 {
-    if (text.size() > largest_file) {
-        refuse({}, fmt::format("{} bytes are too many for such a file, {} at most", text.size(), largest_file));
-    }
+    if (text.size() > largest_file) throw StudyError(too_large(file));
     if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
         refuse({}, fmt::format("not a text: byte {} is zero", zero + 1));
     }
