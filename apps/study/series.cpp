@@ -1,6 +1,7 @@
 #include "apps/study/series.h"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace patchlight {
 
@@ -24,13 +25,20 @@ std::vector<StudySeries> series_of(const StudyResult& study)
     std::vector<StudySeries> all;
     for (std::size_t c = 0; c < study.cells.size(); ++c) {
         const CellResult& cell = study.cells[c];
-        const std::string name = name_without(study, cell);
-        auto series = std::ranges::find_if(
-            all, [&](const StudySeries& s) { return s.name == name && s.scene == cell.cell.scene; });
-        if (series == all.end()) series = all.insert(all.end(), {name, cell.cell.scene, {}});
+        const std::string name = name_without(study, cell), scene = scene_name(study, cell);
+        auto series =
+            std::ranges::find_if(all, [&](const StudySeries& s) { return s.name == name && s.scene == scene; });
+        if (series == all.end()) series = all.insert(all.end(), {name, scene, {}});
         series->cells.push_back(c);
     }
     return all;
+}
+
+std::string scene_name(const StudyResult& study, const CellResult& cell)
+{
+    for (std::size_t a = 0; a < study.axes.size() && a < cell.cell.values.size(); ++a)
+        if (study.axes[a].name == "scene") return cell.cell.values[a];
+    return std::filesystem::path(cell.cell.scene).filename().string();
 }
 
 bool ran_to_its_end(const CellResult& cell)

@@ -13,12 +13,15 @@ namespace patchlight {
 /// series of its own.
 struct StudySeries {
     std::string name;                ///< "refine=both"; of a study with one series: its name
-    std::string scene;               ///< that all its cells are of
+    std::string scene;               ///< that all its cells are of, as scene_name() has it
     std::vector<std::size_t> cells;  ///< places in StudyResult::cells, in the order of the axis
 };
 
 /// In the order of their first cells.
 std::vector<StudySeries> series_of(const StudyResult& study);
+
+/// A cell's scene, wherever its file is: as the study's axis of scenes has it; without such an axis the file's name.
+std::string scene_name(const StudyResult& study, const CellResult& cell);
 
 /// Whether a cell ran to its end and shows something: its last cycle counts as its result.
 bool ran_to_its_end(const CellResult& cell);

@@ -33,7 +33,7 @@ Json json_of(const StudyResult& study, const CellResult& cell, const TableOption
     Json out = {{"index", cell.cell.index},
                 {"name", cell.cell.name},
                 {"id", cell.id},
-                {"scene", cell.cell.scene},
+                {"scene", scene_name(study, cell)},
                 {"values", values},
                 {"status", name_of(cell.status)},
                 {"message", cell.message},

@@ -113,6 +113,17 @@ TEST(RatesTest, WithoutAnAxisEachCellIsASeriesAndScenesAreApart)
     EXPECT_EQ(series_of(study).size(), 3U);
 }
 
+TEST(RatesTest, ScenesAreNamedWithoutTheirFolders)
+{
+    StudyResult study = testing::made_study();
+    study.cells[0].cell.scene = "/home/somebody/room.obj";
+    EXPECT_EQ(series_of(study)[0].scene, "room.obj");
+    EXPECT_EQ(series_of(study).size(), 2U);
+    study.axes.insert(study.axes.begin(), {"scene", {}});
+    for (CellResult& cell : study.cells) cell.cell.values.insert(cell.cell.values.begin(), "a/room.obj");
+    EXPECT_EQ(scene_name(study, study.cells[0]), "a/room.obj") << "as written, where there may be several";
+}
+
 TEST(RatesTest, WithoutAReferenceEstimatesStandIn)
 {
     StudyResult study = testing::made_study();
