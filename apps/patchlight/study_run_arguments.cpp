@@ -31,10 +31,10 @@ void add_study_run(CLI::App& app, StudyRunCommand& c)
 void add_study_cell(CLI::App& app, StudyCellCommand& c)
 {
     add_study(app, c.study, c.folder);
-    CLI::Option* const index = app.add_option("--index", c.index, "cell to solve, as study check numbers them [the reference]")
+    CLI::Option* const index = app.add_option("--index", c.index, "cell to solve, as study check numbers them [none]")
                                    ->check(whole_between(0, 1'000'000'000))
                                    ->type_name("I");
-    app.add_flag("--reference", c.reference, "the study's reference instead of a cell [with --index: off]")->excludes(index);
+    app.add_flag("--reference", c.reference, "the study's reference instead of a cell [off]")->excludes(index);
     add_machine(app, c.threads, c.quiet, c.json, "print the cell's run.json instead of a summary");
     app.footer("Cells depend on nothing but the study's file and its scenes: they may be run in\n"
                "any order, at the same time, on several machines that share DIR.");
