@@ -82,7 +82,8 @@ TEST(ReadPoints, TakesWhatIsKnownAtPointsToo)
     EXPECT_EQ(points[0].B, Rgb(0.5, 0.25, 0));
     EXPECT_FALSE(points[0].normal);
     EXPECT_THROW(read_points("x,y,z,Br,Bb\n1,2,3,0.5,0\n", "p.csv"), PointsError);
-    EXPECT_THROW(read_points("x,y,z,Br,Bg,Bb\n1,2,3,,,\n", "p.csv"), PointsError);
+    EXPECT_THROW(read_points("x,y,z,Br,Bg,Bb\n1,2,3,1,x,1\n", "p.csv"), PointsError);
+    EXPECT_FALSE(read_points("x,y,z,Br,Bg,Bb\n1,2,3,,,\n", "p.csv")[0].B);
 }
 
 TEST(ReadPoints, TakesHeadersInAnyOrderAndBothLineEnds)
