@@ -31,7 +31,7 @@ void add_study_run(CLI::App& app, StudyRunCommand& c)
 void add_study_cell(CLI::App& app, StudyCellCommand& c)
 {
     add_study(app, c.study, c.folder);
-    CLI::Option* const index = app.add_option("--index", c.index, "cell to solve, as study check numbers them")
+    CLI::Option* const index = app.add_option("--index", c.index, "cell to solve, as study check numbers them [none]")
                                    ->check(whole_between(0, 1'000'000'000))
                                    ->type_name("I");
     app.add_flag("--reference", c.reference, "the study's reference instead of a cell [off]")->excludes(index);

@@ -154,7 +154,8 @@ private:
             }
             point.normal = normal;
         }
-        if (columns_[6] != absent) {
+        // `probe` leaves them empty where no surface is.
+        if (columns_[6] != absent && !fields[columns_[6]].empty()) {
             point.B = three(fields, 6);
         }
         points_.push_back(point);

@@ -141,8 +141,7 @@ std::vector<ReferencePoint> given_reference(const Scene& scene, const std::vecto
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto& [x, y, z] = points[i].as_written;
         if (!points[i].B) {
-            throw PointsError(
-                fmt::format("{}: a reference's points need columns Br,Bg,Bb, named in the first line", name));
+            throw PointsError(fmt::format("{}: {},{},{} has no radiosity in columns Br,Bg,Bb", name, x, y, z));
         }
         if (!answers[i]) {
             throw PointsError(fmt::format("{}: {},{},{} is on no surface of {}", name, x, y, z, scene.name));
