@@ -65,6 +65,7 @@ void refuse_foreign(const StudyFolder& folder)
     const bool marked = has("study.toml") || has("cells") || has("references");
     for (const auto& entry : std::filesystem::directory_iterator(root)) {
         const std::string name = entry.path().filename().string();
+        if (name.starts_with('.')) continue;  // unfinished files of ours, and what file systems and schedulers leave
         if (!marked || std::ranges::find(ours, name) == ours.end()) {
             throw FolderRefused(
                 fmt::format("{} holds {}, which is no study's; name a new folder", root.string(), name));

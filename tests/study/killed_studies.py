@@ -89,6 +89,14 @@ class KilledStudies(unittest.TestCase):
         study.run("--quiet", output="whole")
         self.assertEqual(differing(study.files("whole"), study.files()), [])
 
+    def test_what_a_kill_left_half_written_goes(self):
+        study = StudyFolder(self, STUDY.replace("[100, 150, 200, 300]", "[100]"))
+        study.run("--quiet")
+        before = study.files()
+        (study.folder / "out/.study.json.1.patchlight-tmp").write_text("{")
+        study.run("--quiet")
+        self.assertEqual(differing(before, study.files()), [])
+
     def test_a_second_run_says_who_is_there(self):
         study = StudyFolder(self, STUDY)
         first = study.start("--quiet")
