@@ -18,9 +18,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Pictures are labelled with that font.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "adaptive-meshing radiosity
- Solves the light between diffuse surfaces on a coarse patch mesh, finds where
- the mesh is wrong, refines it there, solves again, and shows before and after,
- with the error measured.")
+Solves the light between diffuse surfaces on a coarse patch mesh, finds where
+the mesh is wrong, refines it there, solves again, and shows before and after,
+with the error measured.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME patchlight-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
@@ -28,6 +28,6 @@ set(dev_depends "patchlight (= ${PROJECT_VERSION})" libglm-dev libtbb-dev libboo
   libopenmesh-dev libtinyobjloader-dev libtinygltf-dev libfmt-dev libssl-dev libgmp-dev)
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "adaptive-meshing radiosity, to build on
- Headers and static libraries of patchlight's meshing, form factors, solver,
- pictures and run folders, for CMake's find_package, and an example.")
+Headers and static libraries of patchlight's meshing, form factors, solver,
+pictures and run folders, for CMake's find_package, and an example.")
 include(CPack)

@@ -23,7 +23,7 @@ def made_packages(build, folder):
     """The packages of a build: patchlight, patchlight-dev."""
     shutil.rmtree(folder, ignore_errors=True)
     run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder)
-    made = sorted(folder.glob("*.deb"))
+    made = sorted(folder.glob("*.deb"), key=lambda p: p.name.split("_")[0])
     if [p.name.split("_")[0] for p in made] != ["patchlight", "patchlight-dev"]:
         raise SystemExit(f"packages made: {[p.name for p in made]}")
     return made
