@@ -17,7 +17,8 @@ endforeach()
 target_link_options(patchlight_imaging INTERFACE $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/lib/patchlight>)
 
 set(config_folder lib/cmake/patchlight)
-install(EXPORT patchlight NAMESPACE patchlight:: FILE patchlight-targets.cmake DESTINATION ${config_folder} COMPONENT dev)
+install(EXPORT patchlight NAMESPACE patchlight:: FILE patchlight-targets.cmake DESTINATION ${config_folder}
+  COMPONENT dev)
 configure_package_config_file(cmake/patchlight-config.cmake.in ${PROJECT_BINARY_DIR}/patchlight-config.cmake
   INSTALL_DESTINATION ${config_folder})
 # Before 1.0 a minor version may change everything.

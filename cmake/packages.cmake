@@ -17,6 +17,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Pictures are labelled with that font.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core)
+if(TARGET patchlight_python)
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+endif()
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "adaptive-meshing radiosity
 Solves the light between diffuse surfaces on a coarse patch mesh, finds where
 the mesh is wrong, refines it there, solves again, and shows before and after,

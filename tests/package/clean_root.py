@@ -90,6 +90,13 @@ def check_demo(root, build, folder):
     print(f"  {len(files)} files as outside")
 
 
+def check_python(root):
+    """The module, where it was built."""
+    if (root / "usr/lib/python3/dist-packages/patchlight").is_dir():
+        in_root(root, f"{APT} install python3-numpy")
+        in_root(root, "python3 -c 'import patchlight; print(patchlight.__doc__)'", user=1000)
+
+
 def check_example(root):
     printed = in_root(root, f"""cp -r /usr/share/doc/patchlight-dev/example .
 cmake -S example -B example/build >&2
@@ -103,8 +110,8 @@ example/build/example $scene {ELEMENTS} example.png""", user=1000)
 
 def check_removal(root):
     in_root(root, f"{APT} purge patchlight patchlight-dev")
-    left = [p for p in ("usr/bin/patchlight", "usr/lib/patchlight", "usr/include/patchlight", "usr/lib/cmake/patchlight",
-                        "usr/share/doc/patchlight") if (root / p).exists()]
+    ours = ("bin/patchlight", "lib/patchlight", "include/patchlight", "lib/cmake/patchlight", "share/doc/patchlight")
+    left = [p for p in ours if (root / "usr" / p).exists()]
     if left:
         sys.exit(f"left after purging: {left}")
 
@@ -128,6 +135,7 @@ def main():
         install(root, dev)
         in_root(root, f"{APT} install cmake make g++")
         steps.done("apt install patchlight-dev, compiler")
+        check_python(root)
         check_example(root)
         check_removal(root)
         steps.done("example, removal")

@@ -61,7 +61,8 @@ def main():
 
     for first, second in zip((program, dev), made_packages(build, folder / "second")):
         check(first.read_bytes() == second.read_bytes(), f"{first.name}: other bytes at the second time")
-        print(f"{first.name}: {first.stat().st_size / 1e6:.1f} MB, installed {int(field(first, 'Installed-Size')) / 1e3:.1f} MB")
+        installed = int(field(first, "Installed-Size")) / 1e3
+        print(f"{first.name}: {first.stat().st_size / 1e6:.1f} MB, installed {installed:.1f} MB")
 
 
 if __name__ == "__main__":

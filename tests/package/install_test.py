@@ -76,8 +76,8 @@ def check_example(source, prefix, folder):
     printed = run(build / "example", scene, ELEMENTS, folder / "example.png", cwd="/")
     if png_size(folder / "example.png") != (320, 240):
         raise SystemExit("the example's picture has another size")
-    run(prefix / "bin/patchlight", "solve", scene, "-o", folder / "run", "--max-elements", ELEMENTS, "--pictures", "none",
-        "--quiet", cwd="/")
+    run(prefix / "bin/patchlight", "solve", scene, "-o", folder / "run", "--max-elements", ELEMENTS,
+        "--pictures", "none", "--quiet", cwd="/")
     check_numbers(printed, folder / "run")
 
 
