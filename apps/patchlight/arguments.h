@@ -42,8 +42,9 @@ struct SolveCommand {
     bool quiet = false;
     bool json = false;
     bool demo = false;
-    double memory = 0;  ///< bytes; 0: 80 % of what the machine has
-    int threads = 0;    ///< 0: as many as there are
+    double memory = 0;          ///< bytes; 0: 80 % of what the machine has
+    int threads = 0;            ///< 0: as many as there are
+    std::string configuration;  ///< a file of options, already among these; empty: none
 };
 
 struct DemoCommand {
@@ -179,14 +180,21 @@ struct ReportCommand {
     bool json = false;
 };
 
+/// What a study would do, and what that would need.
+struct StudyCheckCommand {
+    std::string study;
+    int jobs = 1;  ///< cells at a time
+    bool json = false;
+};
+
 /// What only prints: --help and --version.
 struct PrintCommand {
     std::string text;
 };
 
-using Command =
-    std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand, VerifyCommand,
-                 FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand, ReportCommand, PrintCommand>;
+using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
+                             VerifyCommand, FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand,
+                             ReportCommand, StudyCheckCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

@@ -100,6 +100,14 @@ OptionDescription described(const CLI::Option& option)
     return d;
 }
 
+/// The words behind the program.
+std::string path_of(const CLI::App& app)
+{
+    if (app.get_parent() == nullptr) return {};
+    const std::string above = path_of(*app.get_parent());
+    return above.empty() ? app.get_name() : above + " " + app.get_name();
+}
+
 }  // namespace
 
 CommandDescription described(const CLI::App& app)
@@ -107,12 +115,13 @@ CommandDescription described(const CLI::App& app)
     CommandDescription d;
     d.name = app.get_name();
     d.text = app.get_description();
+    d.path = path_of(app);
     if (app.get_parent() == nullptr || app.get_footer() != app.get_parent()->get_footer()) {
         d.footer = app.get_footer();
     }
     d.purpose = "Other";
     for (const CommandExamples& known : command_examples()) {
-        if (known.command == (app.get_parent() == nullptr ? "" : d.name)) {
+        if (known.command == d.path) {
             d.purpose = known.purpose;
             d.examples = known.lines;
         }
@@ -137,7 +146,9 @@ std::string signature(const OptionDescription& option)
 
 std::string usage(const CommandDescription& command)
 {
-    std::string text = command.commands.empty() ? "patchlight " + command.name : "patchlight COMMAND";
+    std::string text = "patchlight";
+    if (!command.path.empty()) text += " " + command.path;
+    if (!command.commands.empty()) text += " COMMAND";
     for (const OptionDescription& value : command.values) {
         text += fmt::format(" {}", signature(value));
     }

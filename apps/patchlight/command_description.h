@@ -27,6 +27,7 @@ struct OptionDescription {
 /// All that help, manual page and completions know of a command.
 struct CommandDescription {
     std::string name, text, footer;
+    std::string path;                   ///< the words behind the program: "study check"; empty: the program
     std::string purpose;                ///< the group that it is listed in
     std::vector<std::string> examples;  ///< command lines without the program, for the repository's root
     std::vector<OptionDescription> values, options;
@@ -42,8 +43,8 @@ std::string signature(const OptionDescription& option);
 /// "patchlight solve SCENE -o RUN [OPTIONS]"
 std::string usage(const CommandDescription& command);
 
-/// For a terminal of 80 columns. `program` is what examples begin with; `command` is the whole program or one of its
-/// commands.
+/// For a terminal of 80 columns. `program` is what examples begin with; `command` is the whole program, a group of
+/// commands or one of them.
 std::string help_text(const CommandDescription& command, const std::string& program);
 
 /// The manual page, for groff's man macros; `version` stands in its footer.

@@ -29,6 +29,11 @@ const std::vector<CommandExamples>& command_examples()
          {"formfactors data/scenes/cornell-box.obj --unit mm --between light floor",
           "formfactors data/scenes/furnace.obj --max-elements 300 -o factors.csv"}},
         {"validate", "Check", {"validate --method closed-form"}},
+        {"study", "Study", {"study check data/studies/cornell-meshes.toml"}},
+        {"study check",
+         "Study",
+         {"study check data/studies/cornell-meshes.toml",
+          "study check data/studies/cornell-meshes.toml --jobs 2 --json"}},
         {"completion", "Shell", {"completion bash > patchlight.bash"}},
         {"man", "Shell", {"man > patchlight.1"}},
     };

@@ -61,20 +61,39 @@ std::string bash_offer(const OptionDescription& option)
     }
 }
 
-std::string bash_case(const CommandDescription& command)
+std::string bash_cases(const CommandDescription& group, int depth, const std::string& indent);
+
+std::string bash_case(const CommandDescription& command, int depth, const std::string& indent)
 {
-    std::string out = fmt::format("    {})\n        case $prev in\n", command.name);
+    std::string out = fmt::format("{}{})\n", indent, command.name);
+    const std::string in = indent + "    ";
+    if (!command.commands.empty()) {
+        return out + bash_cases(command, depth + 1, in) + in + ";;\n";
+    }
+    out += in + "case $prev in\n";
     for (const OptionDescription& option : command.options) {
         if (option.kind != ValueKind::none) {
-            out += fmt::format("            {}) {}; return ;;\n", fmt::join(option.names, " | "), bash_offer(option));
+            out += fmt::format("{}    {}) {}; return ;;\n", in, fmt::join(option.names, " | "), bash_offer(option));
         }
     }
-    out += fmt::format("        esac\n        case $cur in\n            -*) _patchlight_words '{}' ;;\n",
+    out += fmt::format("{0}esac\n{0}case $cur in\n{0}    -*) _patchlight_words '{1}' ;;\n", in,
                        all_names(command.options));
     if (!command.values.empty()) {
-        out += fmt::format("            *) {} ;;\n", bash_offer(command.values.front()));
+        out += fmt::format("{}    *) {} ;;\n", in, bash_offer(command.values.front()));
     }
-    return out + "        esac ;;\n";
+    return out + in + "esac ;;\n";
+}
+
+/// The word at `depth` names one of the group's commands: it is offered, or what stands behind it.
+std::string bash_cases(const CommandDescription& group, int depth, const std::string& indent)
+{
+    std::string out = fmt::format("{0}if [ \"$COMP_CWORD\" -eq {1} ]; then\n{0}    _patchlight_words '{2} {3}'\n"
+                                  "{0}    return\n{0}fi\n{0}case ${{COMP_WORDS[{1}]}} in\n",
+                                  indent, depth, command_names(group), all_names(group.options));
+    for (const CommandDescription& command : group.commands) {
+        out += bash_case(command, depth, indent + "    ");
+    }
+    return out + indent + "esac\n";
 }
 
 std::string bash_script(const CommandDescription& program)
@@ -89,15 +108,8 @@ std::string bash_script(const CommandDescription& program)
                       "    COMPREPLY=()\n"
                       "    # --option=value comes in three words.\n"
                       "    if [ \"$prev\" = = ]; then\n        prev=${COMP_WORDS[COMP_CWORD - 2]}\n"
-                      "    elif [ \"$cur\" = = ]; then\n        cur=\n    fi\n"
-                      "    if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
-    out += fmt::format("        _patchlight_words '{} {}'\n        return\n    fi\n", command_names(program),
-                       all_names(program.options));
-    out += "    case ${COMP_WORDS[1]} in\n";
-    for (const CommandDescription& command : program.commands) {
-        out += bash_case(command);
-    }
-    return out + "    esac\n}\ncomplete -F _patchlight patchlight\n";
+                      "    elif [ \"$cur\" = = ]; then\n        cur=\n    fi\n";
+    return out + bash_cases(program, 1, "    ") + "}\ncomplete -F _patchlight patchlight\n";
 }
 
 /// In a description between brackets, or before a colon, these end it.
@@ -148,22 +160,32 @@ std::string zsh_options(const CommandDescription& command)
     return out;
 }
 
+/// A group's commands, or what stands behind the one that was chosen.
+std::string zsh_cases(const CommandDescription& group, const std::string& indent)
+{
+    std::string out = indent + "commands=(\n";
+    for (const CommandDescription& command : group.commands) {
+        out += fmt::format("{}    {}\n", indent, quoted(fmt::format("{}:{}", command.name, zsh_text(command.text))));
+    }
+    out += fmt::format("{0})\n{0}if (( CURRENT == 2 )); then\n{0}    _describe command commands\n"
+                       "{0}    compadd -- {1}\n{0}    return\n{0}fi\n"
+                       "{0}shift words\n{0}(( CURRENT-- ))\n{0}case $words[1] in\n",
+                       indent, all_names(group.options));
+    for (const CommandDescription& command : group.commands) {
+        out += command.commands.empty() ? fmt::format("{0}    {1})\n{0}        _arguments{2} ;;\n", indent,
+                                                      command.name, zsh_options(command))
+                                        : fmt::format("{0}    {1})\n{2}{0}        ;;\n", indent, command.name,
+                                                      zsh_cases(command, indent + "        "));
+    }
+    return out + indent + "esac\n";
+}
+
 std::string zsh_script(const CommandDescription& program)
 {
-    std::string out = "#compdef patchlight\n# zsh completion of patchlight, written by: patchlight completion zsh\n"
-                      "_patchlight() {\n    local -a commands=(\n";
-    for (const CommandDescription& command : program.commands) {
-        out += fmt::format("        {}\n", quoted(fmt::format("{}:{}", command.name, zsh_text(command.text))));
-    }
-    out += fmt::format("    )\n    if (( CURRENT == 2 )); then\n        _describe command commands\n"
-                       "        compadd -- {}\n        return\n    fi\n"
-                       "    shift words\n    (( CURRENT-- ))\n    case $words[1] in\n",
-                       all_names(program.options));
-    for (const CommandDescription& command : program.commands) {
-        out += fmt::format("        {})\n            _arguments{} ;;\n", command.name, zsh_options(command));
-    }
-    return out +
-           "    esac\n}\n"
+    return "#compdef patchlight\n# zsh completion of patchlight, written by: patchlight completion zsh\n"
+           "_patchlight() {\n    local -a commands\n" +
+           zsh_cases(program, "    ") +
+           "}\n"
            "if [[ $funcstack[1] == _patchlight ]]; then _patchlight \"$@\"; else compdef _patchlight patchlight; fi\n";
 }
 
@@ -193,6 +215,45 @@ std::string fish_line(const std::string& when, const OptionDescription& option)
     return line + fish_offer(option) + " -d " + fish_quoted(option.text) + "\n";
 }
 
+/// When a command's options are offered: it was named, and no group that may have another of its name.
+std::string fish_when(const CommandDescription& program, const CommandDescription& command)
+{
+    std::string when = "__fish_seen_subcommand_from " + command.name;
+    for (const CommandDescription& group : program.commands) {
+        if (std::ranges::find(group.commands, command.name, &CommandDescription::name) != group.commands.end()) {
+            when += "; and not __fish_seen_subcommand_from " + group.name;
+        }
+    }
+    return when;
+}
+
+/// The commands of a group are offered when `before` holds.
+std::string fish_commands(const CommandDescription& group, const std::string& before)
+{
+    std::string out;
+    for (const CommandDescription& command : group.commands) {
+        out += fmt::format("complete -c patchlight -n '{}' -a {} -d {}\n", before, command.name,
+                           fish_quoted(command.text));
+    }
+    return out;
+}
+
+/// What stands behind a command.
+std::string fish_values(const CommandDescription& command, const std::string& when)
+{
+    std::string out;
+    if (!command.values.empty()) {
+        // Where no option is at work: the value by its place.
+        std::string offer = fish_offer(command.values.front());
+        offer = replaced(replaced(offer, " -r", ""), " -x", "");
+        out += fmt::format("complete -c patchlight -n '{}'{}\n", when, offer);
+    }
+    for (const OptionDescription& option : command.options) {
+        out += fish_line(when, option);
+    }
+    return out;
+}
+
 std::string fish_script(const CommandDescription& program)
 {
     std::string out = "# fish completion of patchlight, written by: patchlight completion fish\n"
@@ -200,18 +261,17 @@ std::string fish_script(const CommandDescription& program)
     for (const OptionDescription& option : program.options) {
         out += fish_line("__fish_use_subcommand", option);
     }
+    out += fish_commands(program, "__fish_use_subcommand");
     for (const CommandDescription& command : program.commands) {
-        out += fmt::format("complete -c patchlight -n __fish_use_subcommand -a {} -d {}\n", command.name,
-                           fish_quoted(command.text));
-        const std::string when = "__fish_seen_subcommand_from " + command.name;
-        if (!command.values.empty()) {
-            // Where no option is at work: the value by its place.
-            std::string offer = fish_offer(command.values.front());
-            offer = replaced(replaced(offer, " -r", ""), " -x", "");
-            out += fmt::format("complete -c patchlight -n '{}'{}\n", when, offer);
+        const std::string when = fish_when(program, command);
+        if (command.commands.empty()) {
+            out += fish_values(command, when);
+            continue;
         }
-        for (const OptionDescription& option : command.options) {
-            out += fish_line(when, option);
+        out += fish_commands(command,
+                             fmt::format("{}; and not __fish_seen_subcommand_from {}", when, command_names(command)));
+        for (const CommandDescription& inner : command.commands) {
+            out += fish_values(inner, when + "; and __fish_seen_subcommand_from " + inner.name);
         }
     }
     return out;

@@ -13,6 +13,7 @@ struct CostEstimate {
     std::size_t elements = 0;  ///< of the largest mesh
     double rays = 0;           ///< of all cycles
     double bytes = 0;          ///< at the largest
+    double cpu_seconds = 0;    ///< of all cycles and threads, without pictures
 };
 
 CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options);

@@ -1,6 +1,7 @@
 #include "apps/patchlight/factor_between.h"
 
 #include "apps/patchlight/usage_error.h"
+#include "apps/run/nearest_names.h"
 #include "apps/run/stored_scene.h"
 #include "formfactor/blockers.h"
 #include "meshing/scene_error.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 #include <stdexcept>
 
 namespace patchlight {
@@ -21,27 +21,10 @@ constexpr std::size_t most_listed = 8;
 /// Pairs of facets looked at for something in between; a scan of more would take longer than the factor.
 constexpr std::size_t most_looked_at = 20'000;
 
-/// Insertions, deletions and changes of a byte that lead from one word to the other.
-std::size_t edit_distance(const std::string& a, const std::string& b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-        }
-    }
-    return row.back();
-}
-
 std::string nearest_names(const std::string& name, std::vector<std::string> names)
 {
     const std::size_t all = names.size();
-    std::ranges::stable_sort(names, {}, [&](const std::string& other) { return edit_distance(name, other); });
+    names = by_nearness(name, std::move(names));
     names.resize(std::min(all, most_listed));
     for (std::string& other : names) {
         other = "\"" + other + "\"";

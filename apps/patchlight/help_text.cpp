@@ -80,7 +80,8 @@ std::string help_text(const CommandDescription& command, const std::string& prog
     out += entries("Values", command.values);
     out += entries("Options", command.options);
     if (whole) {
-        out += "\npatchlight COMMAND --help tells a command's options.\n";
+        out += fmt::format("\npatchlight {}COMMAND --help tells a command's options.\n",
+                           command.path.empty() ? "" : command.path + " ");
     }
     return out + (command.footer.empty() ? "" : fmt::format("\n{}\n", command.footer));
 }

@@ -1,6 +1,7 @@
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/run/probing.h"
+#include "apps/study/study.h"
 #include "meshing/scene_error.h"
 #include "solver/progress.h"
 
@@ -59,6 +60,12 @@ int run_and_report(int argc, const char* const* argv, Session& session)
     } catch (const PointsError& error) {
         say.error("points", error.what());
         return 2;
+    } catch (const StudyError& error) {
+        say.error("study", error.what());
+        return 2;
+    } catch (const StudyLimitError& error) {
+        say.error("study", error.what());
+        return 5;
     } catch (const SceneError& error) {
         say.error(error.code(), error.what());
         return 3;

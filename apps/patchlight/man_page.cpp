@@ -52,6 +52,9 @@ std::string section(const CommandDescription& command)
     if (!command.footer.empty()) {
         out += fmt::format(".PP\n{}\n", plain(command.footer));
     }
+    for (const CommandDescription& inner : command.commands) {
+        out += section(inner);
+    }
     return out;
 }
 

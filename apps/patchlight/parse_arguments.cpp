@@ -10,12 +10,15 @@
 #include "apps/patchlight/report_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/solve_arguments.h"
+#include "apps/patchlight/study_arguments.h"
+#include "apps/patchlight/study_options.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/verify_arguments.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace patchlight {
 
@@ -39,6 +42,7 @@ struct Parser {
     CompareCommand compare;
     AnimateCommand animate;
     ReportCommand report;
+    StudyCommands study;
     SolveTexts solve_texts;
     RenderTexts render_texts;
     SceneTexts inspect_texts;
@@ -73,6 +77,7 @@ struct Parser {
         add_validate(*app.add_subcommand("validate", "Every form-factor method against known answers"), validate,
                      validate_method);
         add_report(*app.add_subcommand("report", "A stored run as one HTML page, with the scene in 3-D"), report);
+        patchlight::add_study(*app.add_subcommand("study", "Many runs from one file, measured alike"), study);
         add_completion();
     }
 
@@ -121,14 +126,19 @@ struct Parser {
     /// CLI11 would only say that a command is missing.
     void check_command(int argc, const char* const* argv) const
     {
-        std::vector<std::string> commands;
-        for (const CommandDescription& command : described(app).commands) {
-            commands.push_back(command.name);
-        }
-        const std::string word = argc > 1 ? argv[1] : "";
-        if (!word.empty() && word.front() != '-' && std::ranges::find(commands, word) == commands.end()) {
-            throw UsageError("usage",
-                             fmt::format("there is no command \"{}\"; there are {}", word, fmt::join(commands, ", ")));
+        CommandDescription group = described(app);
+        for (int i = 1; i < argc && !group.commands.empty(); ++i) {
+            const std::string word = argv[i];
+            std::vector<std::string> names;
+            std::ranges::transform(group.commands, std::back_inserter(names), &CommandDescription::name);
+            const auto known = std::ranges::find(names, word);
+            if (word.empty() || word.front() == '-') return;
+            if (known == names.end()) {
+                throw UsageError("usage", fmt::format("there is no command \"{}\"; there are {}",
+                                                      group.path.empty() ? word : group.path + " " + word,
+                                                      fmt::join(names, ", ")));
+            }
+            group = CommandDescription(group.commands[static_cast<std::size_t>(known - names.begin())]);
         }
     }
 
@@ -178,6 +188,9 @@ struct Parser {
             finish_report(report);
             return report;
         }
+        if (app.got_subcommand("study")) {
+            return chosen_study(*app.get_subcommand("study"), study);
+        }
         if (app.got_subcommand("completion")) {
             return PrintCommand{completion_script(described(app), shell)};
         }
@@ -194,6 +207,55 @@ std::string program_in(const std::string& called)
     return called == "build/patchlight" || called == "./patchlight" ? called : "patchlight";
 }
 
+/// The help of the command that was asked for, however deep it stands.
+std::string help_of(const CLI::App& app, const std::string& program)
+{
+    const CLI::App* asked = &app;
+    while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
+    return help_text(described(*asked), program);
+}
+
+/// The options of solve's configuration file that its command line doesn't decide.
+std::vector<OptionText> configured(const CLI::App& solve, const std::string& file)
+{
+    std::vector<OptionText> options;
+    try {
+        options = read_configuration(text_of_study(file), file, solve_option_names());
+    } catch (const StudyError& error) {
+        throw UsageError("configuration", error.what());
+    }
+    std::erase_if(options, [&](const OptionText& option) {
+        const CLI::Option* known = solve.get_option("--" + option.name);
+        const auto given = [](const CLI::Option* other) { return other->count() > 0; };
+        return given(known) || std::ranges::any_of(known->get_excludes(), given);
+    });
+    return options;
+}
+
+/// What a configuration says, as if it stood on the command line.
+Command configured_solve(const Parser& first, int argc, const char* const* argv)
+{
+    const std::string file = first.solve.configuration;
+    const std::vector<OptionText> options = configured(*first.app.get_subcommand("solve"), file);
+    std::vector<std::string> words{argv[0], "solve"};
+    for (const OptionText& option : options) {
+        const std::vector<std::string> more = words_of(option, file);
+        words.insert(words.end(), more.begin(), more.end());
+    }
+    words.insert(words.end(), argv + 2, argv + argc);
+    std::vector<const char*> all;
+    for (const std::string& word : words) all.push_back(word.c_str());
+    Parser parser;
+    try {
+        parser.app.parse(static_cast<int>(all.size()), all.data());
+        return parser.chosen();
+    } catch (const CLI::ParseError& error) {
+        throw UsageError("usage", with_place(error.what(), options, file));
+    } catch (const UsageError& error) {
+        throw UsageError(error.code(), with_place(error.what(), options, file));
+    }
+}
+
 }  // namespace
 
 Command parse_arguments(int argc, const char* const* argv)
@@ -203,16 +265,13 @@ Command parse_arguments(int argc, const char* const* argv)
     try {
         parser.app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        for (const CLI::App* command : parser.app.get_subcommands()) {
-            return PrintCommand{help_text(described(*command), program_in(argv[0]))};
-        }
-        return PrintCommand{help_text(described(parser.app), program_in(argv[0]))};
+        return PrintCommand{help_of(parser.app, program_in(argv[0]))};
     } catch (const CLI::CallForVersion& version) {
         return PrintCommand{std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {
         throw UsageError("usage", std::string(error.what()) + " (patchlight --help tells more)");
     }
-    return parser.chosen();
+    return parser.solve.configuration.empty() ? parser.chosen() : configured_solve(parser, argc, argv);
 }
 
 }  // namespace patchlight

@@ -155,6 +155,9 @@ void add_solve(CLI::App& app, SolveCommand& c, SolveTexts& t)
     add_pictures(app, c, t);
     app.add_option("--memory", t.memory, "refuse what needs more, as 8GiB or 500MB [80 % of the machine's]")
         ->type_name("SIZE");
+    app.add_option("--config", c.configuration,
+                   "a TOML file of these options, as max_elements = 4000; what stands here wins [none]")
+        ->type_name("FILE");
 }
 
 void finish_solve(SolveCommand& c, const SolveTexts& t)

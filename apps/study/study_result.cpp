@@ -21,4 +21,23 @@ std::string name_of(CellStatus status)
     return "unknown";
 }
 
+std::string name_of(ReferenceKind kind)
+{
+    switch (kind) {
+    case ReferenceKind::none:
+        return "none";
+    case ReferenceKind::path_traced:
+        return "path-traced";
+    case ReferenceKind::solution:
+        return "solution";
+    case ReferenceKind::run:
+        return "run";
+    case ReferenceKind::points:
+        return "points";
+    case ReferenceKind::furnace:
+        return "furnace";
+    }
+    return "unknown";
+}
+
 }  // namespace patchlight

@@ -222,6 +222,7 @@ TEST(Architecture, ThirdPartyLibrariesStayInTheirRooms)
     expect_only_in_sources_of(header_in("openssl/"), "apps/run");
     expect_stays_in(header_in("OpenMesh/"), {"meshing"});
     expect_stays_in(header_in("CLI/"), {"apps/patchlight"});
+    expect_stays_in(header_in("toml++/"), {"apps/study"});
     expect_stays_in(header_in("nlohmann/"), {"meshing", "apps"});
     for (const char* reader : {"tiny_obj_loader", "tiny_gltf"})
         expect_stays_in([&](const std::string& h) { return h.find(reader) != h.npos; }, {"meshing", "apps/run"});

@@ -15,6 +15,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -36,6 +37,15 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
     std::ofstream(file, std::ios::binary) << text;
 }
 
+/// The words of a line, up to where it leads its output into a file.
+inline std::vector<std::string> words_of(const std::string& line)
+{
+    std::istringstream in(line);
+    std::vector<std::string> words;
+    for (std::string word; in >> word && word != ">";) words.push_back(word);
+    return words;
+}
+
 /// How the command ended. A signal that killed it counts as minus its number.
 struct Outcome {
     int code = 0;
@@ -44,9 +54,9 @@ struct Outcome {
 
 struct Surroundings {
     std::map<std::string, std::string> environment{};
-    std::filesystem::path folder{};             ///< to work in
-    std::optional<rlim_t> largest_file{};       ///< bytes
-    std::filesystem::path standard_output{};    ///< instead of what Outcome shows
+    std::filesystem::path folder{};           ///< to work in
+    std::optional<rlim_t> largest_file{};     ///< bytes
+    std::filesystem::path standard_output{};  ///< instead of what Outcome shows
 };
 
 /// The built command, running. Kills what is left of it.
@@ -84,8 +94,7 @@ public:
     Outcome wait()
     {
         int status = 0;
-        while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-        }
+        while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {}
         pid_ = -1;
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), text_of(out_), text_of(err_)};
     }
@@ -156,8 +165,8 @@ protected:
     /// Options that make a solve of that scene take a tenth of a second.
     static std::vector<std::string> small(std::vector<std::string> words)
     {
-        for (const char* word : {"--max-elements", "220", "--max-edge", "0.5", "--rays", "32", "--vertex-rays", "16",
-                                 "--size", "32x32"}) {
+        for (const char* word :
+             {"--max-elements", "220", "--max-edge", "0.5", "--rays", "32", "--vertex-rays", "16", "--size", "32x32"}) {
             words.emplace_back(word);
         }
         return words;

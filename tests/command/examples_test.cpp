@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <set>
 #include <sstream>
 
@@ -13,14 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-std::vector<std::string> words_of(const std::string& line)
-{
-    std::istringstream in(line);
-    std::vector<std::string> words;
-    for (std::string word; in >> word && word != ">";) words.push_back(word);
-    return words;
-}
 
 /// Examples are to be copied whole: they may be wider.
 void expect_fits(const std::string& help)
@@ -40,7 +33,9 @@ TEST_F(ExamplesTest, AreTheirCommandsOwnAndAreUnderstood)
         EXPECT_FALSE(known.lines.empty()) << known.command;
         for (const std::string& line : known.lines) {
             const auto words = words_of(line);
-            EXPECT_TRUE(known.command.empty() || words.front() == known.command) << line;
+            EXPECT_TRUE(known.command.empty() || line.starts_with(std::string(known.command) + " ") ||
+                        line == known.command)
+                << line;
             std::vector<const char*> argv{"patchlight"};
             for (const std::string& word : words) argv.push_back(word.c_str());
             EXPECT_NO_THROW(parse_arguments(static_cast<int>(argv.size()), argv.data())) << line;
@@ -48,28 +43,43 @@ TEST_F(ExamplesTest, AreTheirCommandsOwnAndAreUnderstood)
     }
 }
 
-TEST_F(ExamplesTest, HelpOfEveryCommandBeginsWithOneAndFitsEightyColumns)
+/// The commands of a group, and those of groups in it: their names stand in its help below lines that name their
+/// purpose.
+std::vector<std::string> commands_in(const std::string& group, const std::function<std::string(std::string)>& help)
 {
-    const Outcome whole = run({"--help"});
-    EXPECT_THAT(whole.out, StartsWith("Example: patchlight "));
-    std::set<std::string> known;
-    for (const CommandExamples& examples : command_examples()) known.emplace(examples.command);
-    // Its commands stand below lines that name their purpose.
-    std::istringstream lines(whole.out.substr(0, whole.out.find("\nOptions:")));
-    std::size_t commands = 0;
+    std::vector<std::string> commands;
+    const std::string text = help(group);
+    std::istringstream lines(text.substr(0, text.find("\nOptions:")));
     for (std::string line; std::getline(lines, line);) {
         if (!line.starts_with("  ") || line[2] == ' ') continue;
-        const std::string command = words_of(line).front();
-        ++commands;
-        EXPECT_TRUE(known.contains(command)) << command << " has no example";
-        const Outcome help = run({command, "--help"});
-        EXPECT_EQ(help.code, 0);
-        EXPECT_THAT(help.out, StartsWith("Example: patchlight " + command));
-        EXPECT_THAT(help.out, HasSubstr("\nUsage: patchlight " + command));
-        expect_fits(help.out);
+        const std::string path = (group.empty() ? "" : group + " ") + words_of(line).front();
+        commands.push_back(path);
+        if (help(path).find(" COMMAND") == std::string::npos) continue;
+        for (std::string& inner : commands_in(path, help)) commands.push_back(std::move(inner));
     }
-    expect_fits(whole.out);
-    EXPECT_EQ(commands + 1, known.size()) << "an example of a command that doesn't exist";
+    return commands;
+}
+
+TEST_F(ExamplesTest, HelpOfEveryCommandBeginsWithOneAndFitsEightyColumns)
+{
+    const auto help_of = [&](const std::string& command) {
+        const Outcome help = run(words_of(command + " --help"));
+        EXPECT_EQ(help.code, 0);
+        return help.out;
+    };
+    EXPECT_THAT(help_of(""), StartsWith("Example: patchlight "));
+    expect_fits(help_of(""));
+    std::set<std::string> known;
+    for (const CommandExamples& examples : command_examples()) known.emplace(examples.command);
+    const std::vector<std::string> commands = commands_in("", help_of);
+    for (const std::string& command : commands) {
+        EXPECT_TRUE(known.contains(command)) << command << " has no example";
+        const std::string help = help_of(command);
+        EXPECT_THAT(help, StartsWith("Example: patchlight " + command));
+        EXPECT_THAT(help, HasSubstr("\nUsage: patchlight " + command));
+        expect_fits(help);
+    }
+    EXPECT_EQ(commands.size() + 1, known.size()) << "an example of a command that doesn't exist";
 }
 
 TEST_F(ExamplesTest, RunInTheRepositorysRoot)

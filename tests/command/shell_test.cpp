@@ -69,6 +69,9 @@ TEST_F(ShellTest, BashCompletesCommandsOptionsAndValues)
     EXPECT_EQ(bash_offers("verify a"), "a run\nexit 0\n") << "a run is a folder";
     EXPECT_EQ(bash_offers("solve --max-elements a"), "\nexit 0\n") << "no file is a number";
     EXPECT_EQ(bash_offers("completion z"), "zsh\nexit 0\n");
+    EXPECT_EQ(bash_offers("study ch"), "check\nexit 0\n");
+    EXPECT_EQ(bash_offers("study check --jo"), "--jobs\nexit 0\n");
+    EXPECT_EQ(bash_offers("study check a"), "a room.obj\na run\nexit 0\n");
     EXPECT_EQ(bash_offers("nonsense --ref"), "\nexit 0\n");
     EXPECT_THAT(bash_offers("''"), HasSubstr("demo\n"));
 }
@@ -85,22 +88,27 @@ TEST_F(ShellTest, FishCompletesCommandsOptionsAndValues)
     EXPECT_THAT(offers("patchlight solve --ref"), HasSubstr("--refine\t"));
     EXPECT_THAT(offers("patchlight solve --solver h"), ::testing::MatchesRegex("hierarchical\t[^\n]*\nexit 0\n"));
     EXPECT_THAT(offers("patchlight completion z"), HasSubstr("zsh"));
+    EXPECT_THAT(offers("patchlight study "), HasSubstr("check\t"));
+    EXPECT_THAT(offers("patchlight study check --jo"), HasSubstr("--jobs\t"));
+    EXPECT_THAT(offers("patchlight study check "), ::testing::Not(HasSubstr("check\t"))) << "it stands there already";
 }
 
 TEST_F(ShellTest, ZshCompletesInASession)
 {
     ASSERT_TRUE(there_is("zsh")) << "./dev installs it";
     // zsh completes only where somebody types: a terminal inside, in which a tab completes what is the only way on.
-    const std::string script = "zmodload zsh/zpty\nzpty z 'zsh -f -i'\n"
-                               "zpty -w z 'PROMPT=; autoload -Uz compinit; compinit -u -d " +
-                               path("dump") + "; source " + completion("zsh") +
-                               "; patchlight() { print -r -- \"<${(j:|:)@}>\" }; print re\"\"ady'\n"
-                               "zpty -r z seen '*ready*'\n"
-                               "for line in 'so' 'solve --refi' 'solve --solver hier' 'completion z'; do\n"
-                               "  zpty -w -n z \"patchlight $line\"$'\\t\\n'\n"
-                               "  zpty -r z seen '*<*>*'\n  print -r -- \"$seen\"\ndone\nzpty -d z\n";
+    const std::string script =
+        "zmodload zsh/zpty\nzpty z 'zsh -f -i'\n"
+        "zpty -w z 'PROMPT=; autoload -Uz compinit; compinit -u -d " +
+        path("dump") + "; source " + completion("zsh") +
+        "; patchlight() { print -r -- \"<${(j:|:)@}>\" }; print re\"\"ady'\n"
+        "zpty -r z seen '*ready*'\n"
+        "for line in 'so' 'solve --refi' 'solve --solver hier' 'completion z' 'study ch' 'study check --jo'; do\n"
+        "  zpty -w -n z \"patchlight $line\"$'\\t\\n'\n"
+        "  zpty -r z seen '*<*>*'\n  print -r -- \"$seen\"\ndone\nzpty -d z\n";
     const std::string printed = printed_by("timeout 60 zsh -f", folder_ / "scratch", script);
-    for (const char* completed : {"<solve>", "<solve|--refine", "<solve|--solver|hierarchical>", "<completion|zsh>"})
+    for (const char* completed : {"<solve>", "<solve|--refine", "<solve|--solver|hierarchical>", "<completion|zsh>",
+                                  "<study|check>", "<study|check|--jobs"})
         EXPECT_THAT(printed, HasSubstr(completed));
 }
 
@@ -124,6 +132,7 @@ TEST_F(ShellTest, ManualPageHoldsEveryCommandAndOptionAndPleasesGroff)
             EXPECT_NE(of_command.find("\n.B " + (*match)[1].str()), std::string::npos) << (*match)[1];
     }
     EXPECT_GT(options, 50U);
+    EXPECT_THAT(unescaped, HasSubstr("\n.SS patchlight study check STUDY [OPTIONS]\n"));
     ASSERT_TRUE(there_is("groff")) << "./dev installs it";
     EXPECT_EQ(printed_by("groff -man -ww -z -Tutf8", folder_ / "scratch", page.out), "exit 0\n");
 }

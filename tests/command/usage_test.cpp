@@ -40,9 +40,9 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 {
     for (const char* command : {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export",
-                                "report", "formfactors", "validate"}) {
+                                "report", "formfactors", "validate", "study check"}) {
         // An option's lines: its name and value, and indented its text, which ends with what is done without it.
-        const std::string help = run({command, "--help"}).out;
+        const std::string help = run(words_of(std::string(command) + " --help")).out;
         std::istringstream lines(help.substr(help.find("\nOptions:\n") + 10));
         std::string option;
         const auto check = [&] {
@@ -65,11 +65,11 @@ TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 TEST_F(UsageTest, HelpNamesNothingThatDoesNotExist)
 {
     for (const char* command :
-         {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export", "report"}) {
+         {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export", "report", "study"}) {
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
-        for (const char* absent : {"study", "--config"}) {
+        for (const char* absent : {"rerun"}) {
             EXPECT_THAT(help.out, Not(HasSubstr(absent))) << command;
         }
     }

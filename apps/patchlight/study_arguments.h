@@ -1,0 +1,18 @@
+#pragma once
+
+#include "apps/patchlight/arguments.h"
+
+#include <CLI/CLI.hpp>
+
+namespace patchlight {
+
+/// The commands of `patchlight study`; filled in while the line is parsed.
+struct StudyCommands {
+    StudyCheckCommand check;
+};
+
+void add_study(CLI::App& app, StudyCommands& commands);
+/// The one of them that was asked for. Throws UsageError.
+Command chosen_study(const CLI::App& app, const StudyCommands& commands);
+
+}  // namespace patchlight
