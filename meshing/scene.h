@@ -75,7 +75,7 @@ struct Scene {
     std::vector<Vec3> vertices;
     std::vector<SceneTriangle> triangles;
     std::vector<Surface> surfaces;
-    std::vector<SurfaceLine> contact_lines;  ///< see find_contact_lines(); stored runs don't keep them
+    std::vector<SurfaceLine> contact_lines;  ///< see find_contact_lines()
     std::vector<Material> materials;
     std::vector<std::string> objects;
     std::vector<View> views;

@@ -132,13 +132,14 @@ PatchSolution solve_on_links(const Exchange& exchange, const AdaptiveOptions& op
 
 /// Solves (I − diag(ρ)F)B = E with all bounces. Where the emitters' light is known exactly, for the reflected part:
 /// R = ρ H_direct + ρ F R.
-PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& options, Stages& stages)
+PatchSolution solve_patches(const Exchange& exchange, const AdaptiveOptions& options, Stages& stages,
+                            FormFactorMatrix* kept)
 {
     if (options.final.solver == Solver::hierarchical) return solve_on_links(exchange, options, stages);
     PatchSolution solution;
     const std::size_t n = exchange.mesh.patch_count();
     solution.system = stages.run("assemble", &StageSeconds::assemble, n, [&](const WorkMonitor& monitor) {
-        RadiositySystem made = assemble(exchange, options.form_factors, monitor);
+        RadiositySystem made = assemble(exchange, options.form_factors, monitor, kept);
         if (options.final.solver == Solver::conjugate_gradient) make_reciprocal(made, exchange.scene.closed);
         return made;
     });
@@ -256,10 +257,10 @@ PatchMesh next_mesh(const Scene& scene, const PatchMesh& mesh, const RefinementP
 class Lighting {
 public:
     Lighting(const Scene& scene, const RayCaster& caster, const Emitted& emitted, const AdaptiveOptions& options,
-             Stages& stages)
+             Stages& stages, KeptRows* rows)
         : emitted_(emitted), options_(options), mesh_(first_mesh(scene, options)),
           locator_(mesh_), coarse_{scene, caster, mesh_, locator_, emitted.used},
-          patches_(solve_patches(coarse_, options, stages)),
+          patches_(solve_patches(coarse_, options, stages, rows ? &rows->patches : nullptr)),
           weights_(weights_of(coarse_, patches_.system, options, stages))
     {
         if (options.refine == Refine::none) return;
@@ -276,12 +277,13 @@ public:
     bool needs_gathering() const { return !indirect_; }
 
     /// The light at a mesh's nodes: the emitters' and the indirect; of the uniform mesh alone by rays to its patches.
-    LightAtPoints on(const Exchange& exchange, int gather_rays) const
+    /// `kept`: its nodes' rows.
+    LightAtPoints on(const Exchange& exchange, int gather_rays, FormFactorMatrix* kept) const
     {
         if (indirect_) return light_of(exchange, emitted_.light, *indirect_, options_.gather);
         GatherOptions gather = options_.gather;
         gather.rays = gather_rays;
-        return light_from_patches(coarse_, patches_.B, gather);
+        return light_from_patches(coarse_, patches_.B, gather, kept);
     }
 
     /// The error as far as it counts for what is looked at.
@@ -311,12 +313,12 @@ private:
 
 /// The last mesh's nodes: on the uniform mesh with all rays, and for quadratic elements at the middles of edges, too.
 Reconstruction final_nodes(const Exchange& exchange, const Lighting& lighting, Reconstruction found,
-                           const AdaptiveOptions& options, Stages& stages)
+                           const AdaptiveOptions& options, Stages& stages, FormFactorMatrix* kept)
 {
     if (!lighting.needs_gathering() && options.elements == Elements::linear) return found;
     const int rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
     return stages.run("gather", &StageSeconds::gather, exchange.mesh.patch_count(), [&](const WorkMonitor& monitor) {
-        return reconstruct(exchange, lighting.on(exchange, rays), options.gather.crease_angle, monitor,
+        return reconstruct(exchange, lighting.on(exchange, rays, kept), options.gather.crease_angle, monitor,
                            options.elements);
     });
 }
@@ -329,7 +331,8 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
     const RayCaster caster(scene);
     Stages stages(observers);
     const Emitted emitted(scene, options, stages);
-    const Lighting lighting(scene, caster, emitted, options, stages);
+    KeptRows* kept = options.refine == Refine::none ? observers.rows : nullptr;
+    const Lighting lighting(scene, caster, emitted, options, stages, kept);
     const SolveReport& solved = lighting.patches().report;
     // Of a run that is continued they are counted already.
     std::size_t rays = start ? 0 : lighting.rays();
@@ -347,14 +350,17 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
         } else {
             Evaluation found =
                 stages.run("estimate", &StageSeconds::estimate, mesh.patch_count(), [&](const WorkMonitor& monitor) {
-                    return evaluate(exchange, lighting.on(exchange, options.estimate.rays), options.estimate.indicator,
-                                    options.gather.crease_angle, lighting.indirect_error(), monitor);
+                    return evaluate(
+                        exchange, lighting.on(exchange, options.estimate.rays, kept ? &kept->estimate : nullptr),
+                        options.estimate.indicator, options.gather.crease_angle, lighting.indirect_error(), monitor);
                 });
             Radiosity B = cycle == 0 ? lighting.patches().B : patch_means(mesh, found.vertex_B);
             plan = plan_next(scene, mesh, B, found.error, lighting.counted(mesh, found.error), emitted.lines, options);
             const bool last = finished(mesh, found.error, plan, cycle, options);
             Reconstruction nodes{std::move(found.vertex_B), {}, 0};
-            if (last) nodes = final_nodes(exchange, lighting, std::move(nodes), options, stages);
+            if (last)
+                nodes =
+                    final_nodes(exchange, lighting, std::move(nodes), options, stages, kept ? &kept->nodes : nullptr);
             rays += found.rays + nodes.rays;
             const EnergyBalance energy = last && cycle > 0 ? lighting.energy(mesh, locator, B) : lighting.energy();
             if (observers.on_step)

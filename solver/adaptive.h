@@ -5,6 +5,7 @@
 #include "solver/discontinuities.h"
 #include "solver/estimate.h"
 #include "solver/indirect_light.h"
+#include "solver/kept_rows.h"
 #include "solver/progress.h"
 #include "solver/radiosity.h"
 #include "solver/solve.h"
@@ -79,11 +80,14 @@ struct AdaptiveStart {
     ErrorEstimate error;
 };
 
-/// Who is told, and who may stop it.
+/// Who is told, and who may stop it; and who keeps what was traced.
 struct AdaptiveObservers {
     StepObserver on_step;
     ProgressObserver on_progress;
     std::stop_token stop;
+    /// With Refine::none: rows that it holds are used instead of being traced, and must be those of the same geometry,
+    /// mesh and options; the others are filled in before on_step. Rays count the same either way.
+    KeptRows* rows = nullptr;
 };
 
 struct AdaptiveSolution {

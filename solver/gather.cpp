@@ -1,5 +1,7 @@
 #include "solver/gather.h"
 
+#include "formfactor/compressed_rows.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,8 +11,25 @@
 
 namespace patchlight {
 
+namespace {
+
+/// The rows of points, empty where nothing is reflected.
+FormFactorMatrix point_rows(const RowSampler& sampler, const Scene& scene, std::span<const SurfacePoint> points,
+                            const WorkMonitor& monitor)
+{
+    CompressedRows rows(points.size());
+    const std::size_t rays = for_each_row<RowScratch>(points.size(), monitor, [&](std::size_t i, RowScratch& scratch) {
+        if (!scene.material_of(points[i].surface).reflects()) return;
+        sampler.point_row(points[i].position, points[i].surface, points[i].surface.value, i, scratch);
+        rows.put(PatchId(i), scratch.row);
+    });
+    return rows.matrix(rays);
+}
+
+}  // namespace
+
 GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
-                                const GatherOptions& options, const WorkMonitor& monitor)
+                                const GatherOptions& options, const WorkMonitor& monitor, FormFactorMatrix* kept)
 {
     const FormFactorOptions sampling{.rays = options.rays,
                                      .shadow_rays = options.shadow_rays,
@@ -18,6 +37,7 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
                                      .seed = options.seed};
     const std::vector<SurfaceId> sources = exchange.direct ? std::vector<SurfaceId>{} : emitters(exchange.scene);
     const RowSampler sampler(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, sources, sampling);
+    if (kept && kept->size() != points.size()) *kept = point_rows(sampler, exchange.scene, points, monitor);
     Radiosity arriving = B;
     if (exchange.direct)
         for (const PatchId p : exchange.mesh.patches())
@@ -28,21 +48,28 @@ GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, st
     result.rays = for_each_row<RowScratch>(points.size(), monitor, [&](std::size_t i, RowScratch& scratch) {
         const SurfacePoint& point = points[i];
         if (!exchange.scene.material_of(point.surface).reflects()) return;
-        sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
         Rgb H(0.0);
-        for (std::size_t k = 0; k < scratch.row.patches.size(); ++k)
-            H += scratch.row.factors[k] * arriving[scratch.row.patches[k]];
+        if (kept) {
+            for (std::size_t k = kept->row_start[i]; k < kept->row_start[i + 1]; ++k)
+                H += kept->factors[k] * arriving[PatchId(kept->columns[k])];
+        } else {
+            sampler.point_row(point.position, point.surface, point.surface.value, i, scratch);
+            for (std::size_t k = 0; k < scratch.row.patches.size(); ++k)
+                H += scratch.row.factors[k] * arriving[scratch.row.patches[k]];
+        }
         if (exchange.direct)
             H += direct_irradiance(exchange.scene, *exchange.direct, point.limit, point.surface, scratches.local());
         result.irradiance[i] = H;
     });
+    if (kept) result.rays = kept->rays;
     return result;
 }
 
-LightAtPoints light_from_patches(const Exchange& exchange, const Radiosity& B, const GatherOptions& options)
+LightAtPoints light_from_patches(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
+                                 FormFactorMatrix* kept)
 {
-    return [&exchange, &B, options](std::span<const SurfacePoint> points, const WorkMonitor& monitor) {
-        return gather_irradiance(exchange, B, points, options, monitor);
+    return [&exchange, &B, options, kept](std::span<const SurfacePoint> points, const WorkMonitor& monitor) {
+        return gather_irradiance(exchange, B, points, options, monitor, kept);
     };
 }
 

@@ -39,12 +39,15 @@ struct GatheredLight {
 using LightAtPoints = std::function<GatheredLight(std::span<const SurfacePoint>, const WorkMonitor&)>;
 
 /// Irradiance at points from the patch solution B: one more bounce. Points of one surface share their directions,
-/// so that what the rays don't resolve varies smoothly over it. Throws Interrupted.
+/// so that what the rays don't resolve varies smoothly over it. The points' rows are those of `kept` where that holds
+/// them; where it is empty, it is filled. Throws Interrupted.
 GatheredLight gather_irradiance(const Exchange& exchange, const Radiosity& B, std::span<const SurfacePoint> points,
-                                const GatherOptions& options, const WorkMonitor& monitor = {});
+                                const GatherOptions& options, const WorkMonitor& monitor = {},
+                                FormFactorMatrix* kept = nullptr);
 
-/// The same as whatever tells the irradiance; keeps references to `exchange` and B.
-LightAtPoints light_from_patches(const Exchange& exchange, const Radiosity& B, const GatherOptions& options);
+/// The same as whatever tells the irradiance; keeps references to `exchange`, B and `kept`.
+LightAtPoints light_from_patches(const Exchange& exchange, const Radiosity& B, const GatherOptions& options,
+                                 FormFactorMatrix* kept = nullptr);
 
 /// A place of a border, moved toward `inside` of its surface: what is there on this side.
 SurfacePoint border_point(const Vec3& place, const Vec3& inside, SurfaceId surface, double diameter);

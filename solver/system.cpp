@@ -95,11 +95,17 @@ RadiositySystem unassembled(const Exchange& exchange)
     return system;
 }
 
-RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor)
+RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor,
+                         FormFactorMatrix* kept)
 {
     RadiositySystem system = unassembled(exchange);
+    if (kept && kept->size() == exchange.mesh.patch_count()) {
+        system.F = *kept;
+        return system;
+    }
     system.F = form_factor_matrix(exchange.scene, exchange.caster, exchange.mesh, exchange.locator, options, monitor,
                                   exchange.direct ? std::vector<SurfaceId>{} : emitters(exchange.scene));
+    if (kept) *kept = system.F;
     return system;
 }
 

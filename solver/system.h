@@ -46,8 +46,10 @@ Radiosity emittance(const Scene& scene, const PatchMesh& mesh);
 /// Areas, E, ρ and exact direct light of every patch (the mean of three points inside); no form factors yet.
 RadiositySystem unassembled(const Exchange& exchange);
 
-/// The whole system with its sampled rows. Throws Interrupted.
-RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor = {});
+/// The whole system with its sampled rows: `kept` where that holds them; where it is empty, it is filled. Throws
+/// Interrupted.
+RadiositySystem assemble(const Exchange& exchange, const FormFactorOptions& options, const WorkMonitor& monitor = {},
+                         FormFactorMatrix* kept = nullptr);
 
 /// Where the light went, W, three bands together. emitted = absorbed + escaped, but for the error.
 struct EnergyBalance {

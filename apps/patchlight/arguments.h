@@ -39,6 +39,7 @@ struct SolveCommand {
     std::string mesh_sha256;   ///< of the solution that holds that mesh, once it is read
     std::string for_view;      ///< a camera's name or a file: refined for what it sees; empty: for everything
     std::optional<View> goal;  ///< that camera, once the scene is read
+    bool keep_factors = false;
     bool quiet = false;
     bool json = false;
     bool demo = false;
@@ -168,9 +169,19 @@ struct VerifyCommand {
     std::size_t points = 2000;
     std::uint32_t most_paths = 4096;  ///< from each point
     std::uint64_t seed = 1;
+    bool files_only = false;
     bool quiet = false;
     bool json = false;
     int threads = 0;
+};
+
+struct RerunCommand {
+    std::string run;
+    std::string output;  ///< new folder, or one to resume
+    bool quiet = false;
+    bool json = false;
+    double memory = 0;  ///< bytes; 0: 80 % of what the machine has
+    int threads = 0;    ///< 0: as many as there are
 };
 
 struct ReportCommand {
@@ -194,7 +205,7 @@ struct PrintCommand {
 
 using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
                              VerifyCommand, FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand,
-                             ReportCommand, StudyCheckCommand, PrintCommand>;
+                             ReportCommand, StudyCheckCommand, RerunCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

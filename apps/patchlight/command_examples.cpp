@@ -24,6 +24,7 @@ const std::vector<CommandExamples>& command_examples()
         {"probe", "Look", {"probe box --points data/points/cornell-box-floor.csv"}},
         {"export", "Look", {"export box --format ply -o box.ply", "export box --format pvd -o box.pvd"}},
         {"verify", "Check", {"verify box --points 200 --paths 256"}},
+        {"rerun", "Check", {"rerun box -o box-again"}},
         {"formfactors",
          "Check",
          {"formfactors data/scenes/cornell-box.obj --unit mm --between light floor",

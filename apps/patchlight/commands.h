@@ -28,6 +28,7 @@ int run_command(const CompareCommand& command, Session& session);
 int run_command(const AnimateCommand& command, Session& session);
 int run_command(const ReportCommand& command, Session& session);
 int run_command(const StudyCheckCommand& command, Session& session);
+int run_command(const RerunCommand& command, Session& session);
 int run_command(const PrintCommand& command, Session& session);
 
 }  // namespace patchlight

@@ -8,6 +8,7 @@
 #include "apps/patchlight/form_factor_arguments.h"
 #include "apps/patchlight/render_arguments.h"
 #include "apps/patchlight/report_arguments.h"
+#include "apps/patchlight/rerun_arguments.h"
 #include "apps/patchlight/scene_arguments.h"
 #include "apps/patchlight/solve_arguments.h"
 #include "apps/patchlight/study_arguments.h"
@@ -43,13 +44,14 @@ struct Parser {
     AnimateCommand animate;
     ReportCommand report;
     StudyCommands study;
+    RerunCommand rerun;
     SolveTexts solve_texts;
     RenderTexts render_texts;
     SceneTexts inspect_texts;
     FormFactorTexts form_factor_texts;
     CompareTexts compare_texts;
     AnimateTexts animate_texts;
-    std::string validate_method, verify_cycle = "last", probe_cycle = "last", shell;
+    std::string rerun_memory, validate_method, verify_cycle = "last", probe_cycle = "last", shell;
 
     Parser()
     {
@@ -72,6 +74,8 @@ struct Parser {
         add_export(*app.add_subcommand("export", "The solution in other programs' formats"), exported, export_texts);
         add_verify(*app.add_subcommand("verify", "The error of a stored run, measured by path tracing"), verify,
                    verify_cycle);
+        add_rerun(*app.add_subcommand("rerun", "A stored run solved again, and whether it comes out the same"), rerun,
+                  rerun_memory);
         add_form_factors(*app.add_subcommand("formfactors", "Form factors between two objects, or of all patches"),
                          form_factors, form_factor_texts);
         add_validate(*app.add_subcommand("validate", "Every form-factor method against known answers"), validate,
@@ -175,6 +179,10 @@ struct Parser {
         if (app.got_subcommand("verify")) {
             finish_verify(verify, verify_cycle);
             return verify;
+        }
+        if (app.got_subcommand("rerun")) {
+            finish_rerun(rerun, rerun_memory);
+            return rerun;
         }
         if (app.got_subcommand("formfactors")) {
             finish_form_factors(form_factors, form_factor_texts);

@@ -35,6 +35,9 @@ void add_meshing(CLI::App& app, SolveCommand& c, SolveTexts& t)
         ->excludes("--refine")
         ->excludes("--max-edge")
         ->type_name("RUN");
+    app.add_flag("--keep-factors", c.keep_factors,
+                 "with --refine none or --mesh: keep what is traced in RUN/factors.bin; --mesh RUN then traces nothing "
+                 "where only reflectance or emission differ, or the solver [off]");
     t.max_elements_option = app.add_option("--max-elements", o.max_elements, "budget of elements (triangles)")
                                 ->check(whole_between(1, 1'000'000'000))
                                 ->type_name("N")
@@ -190,6 +193,10 @@ void finish_solve(SolveCommand& c, const SolveTexts& t)
     o.meshing.max_edge = t.max_edge * c.scene.options.unit;
     if (!c.mesh_of.empty() && t.max_elements_option->count() > 0) {
         throw UsageError("usage", "--max-elements: the mesh of --mesh is solved as it is");
+    }
+    if (c.keep_factors && o.refine != Refine::none) {
+        throw UsageError("usage", "--keep-factors is for --refine none and --mesh, where light is gathered from the "
+                                  "mesh's own patches");
     }
     const bool uniform = o.refine == Refine::none || o.refine == Refine::discontinuity;
     if (uniform && (t.max_edge <= 0 || t.max_elements_option->count() > 0)) {

@@ -1,9 +1,10 @@
-#include "apps/imaging/view_rays.h"
 #include "apps/patchlight/before_after_table.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
 #include "apps/patchlight/given_mesh.h"
+#include "apps/patchlight/kept_factors.h"
 #include "apps/patchlight/scene_input.h"
+#include "apps/patchlight/seen_points.h"
 #include "apps/patchlight/solve_run.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/view_choice.h"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <limits>
 #include <optional>
 #include <system_error>
 
@@ -33,30 +33,6 @@ std::vector<std::string> gather_warnings(const SceneInput& input, const RayCaste
         session.messages.warning(warning);
     }
     return warnings;
-}
-
-/// What a camera sees, through the pixels of a small picture of it.
-std::vector<SurfacePoint> seen_points(const Scene& scene, const RayCaster& caster, const View& view)
-{
-    constexpr int height = 120;
-    const int width = picture_size(std::nullopt, view).first * height / picture_size(std::nullopt, view).second;
-    const ViewRays camera(view, width, height);
-    RayBatch rays;
-    HitBatch hits;
-    rays.resize(static_cast<std::size_t>(width) * height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            rays.set(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x),
-                     camera.from(), camera.direction(x + 0.5, y + 0.5), std::numeric_limits<float>::infinity());
-    caster.closest(rays, hits);
-    std::vector<SurfacePoint> points;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (hits.surface[i] >= HitBatch::black_back) continue;
-        const SurfaceId surface(hits.surface[i]);
-        const Vec3 place = scene.surface(surface).frame.lift(Vec2(hits.x[i], hits.y[i]));
-        points.push_back({place, surface, place});
-    }
-    return points;
 }
 
 std::string summary_of(const RunFolder& folder)
@@ -153,6 +129,7 @@ int run_command(const SolveCommand& given, Session& session)
         command.options.mesh = std::move(given_mesh.arrays);
     }
     check_memory(input.scene, command.options, command.memory);
+    check_factors_fit(command, input.scene, session);
     const RayCaster caster(input.scene);
     const View view = command.pictures.pictures ? chosen_view(command.scene.view, input.scene, caster) : View{};
     if (command.pictures.pictures) {
@@ -175,16 +152,8 @@ int run_command(const SolveCommand& given, Session& session)
         report(*folder, command, session);
         return 0;
     }
-    folder->set_warnings(warnings);
-    session.interruption.on_deadline([&] {
-        folder->interrupt();
-        session.writer.abandon();
-    });
-    struct Unhook {
-        Interruption& interruption;
-        ~Unhook() { interruption.on_deadline({}); }
-    } const unhook{session.interruption};
-    SolveRun(input, caster, view, command, *folder, session).go();
+    solve_into(*folder, input, caster, view, command, warnings, session,
+               factors_of_run(command, input.scene, caster, session));
     write_demo_report(command, session);
     return report(*folder, command, session);
 }

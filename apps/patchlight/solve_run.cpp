@@ -4,6 +4,7 @@
 #include "apps/imaging/image_file.h"
 #include "apps/patchlight/view_choice.h"
 #include "apps/run/sha256.h"
+#include "apps/run/stored_factors.h"
 #include "apps/run/stored_scene.h"
 #include "apps/run/stored_snapshots.h"
 #include "meshing/scene_error.h"
@@ -31,7 +32,8 @@ std::string_view text_of(const std::vector<unsigned char>& bytes)
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Json seconds_of(const AdaptiveStep& step)
+/// Rows that were used again leave no mark in run.json, which counts the rays that an answer rests on.
+Json seconds_of(const AdaptiveStep& step, std::size_t reused_rays)
 {
     const StageSeconds& s = step.seconds;
     const double tracing = s.assemble + s.solve + s.gather + s.estimate;
@@ -42,7 +44,8 @@ Json seconds_of(const AdaptiveStep& step)
               {"solve", s.solve},
               {"gather", s.gather},
               {"estimate", s.estimate}}},
-            {"rays_per_second", tracing > 0 ? static_cast<double>(step.rays) / tracing : 0.0}};
+            {"rays_per_second", tracing > 0 ? static_cast<double>(step.rays - reused_rays) / tracing : 0.0},
+            {"rays_reused", reused_rays}};
 }
 
 std::string line_of(const CycleRecord& r, const StageSeconds& s)
@@ -71,11 +74,15 @@ RunIdentity identity_of(const SceneInput& input, const SolveCommand& command, co
         shown["name"] = as_utf8(view.name);
     }
     Json scene = json_of(command.scene.options);
+    Json goal = command.goal ? json_of(*command.goal) : Json();
+    if (goal.is_object()) {
+        goal["aspect"] = command.goal->aspect;
+    }
     // A round trip through text, so that options compare as they will when read back: names in UTF-8 and numbers alike.
     const Json options = {{"scene", scene},
                           {"solve", json_of(command.options)},
                           {"mesh", command.mesh_of.empty() ? Json() : Json(command.mesh_sha256)},
-                          {"for_view", command.goal ? json_of(*command.goal) : Json()},
+                          {"for_view", goal},
                           {"pictures",
                            {{"written", command.pictures.pictures ? "all" : "none"},
                             {"width", width},
@@ -87,9 +94,9 @@ RunIdentity identity_of(const SceneInput& input, const SolveCommand& command, co
 }
 
 SolveRun::SolveRun(const SceneInput& input, const RayCaster& caster, const View& view, const SolveCommand& command,
-                   RunFolder& folder, Session& session)
+                   RunFolder& folder, Session& session, KeptRows rows)
     : input_(input), caster_(caster), view_(view), command_(command), folder_(folder), session_(session),
-      display_(session.messages)
+      display_(session.messages), rows_(std::move(rows)), reused_rays_(rows_.rays())
 {
     if (command.pictures.pictures) {
         const auto [width, height] = picture_size(command.pictures.size, view_);
@@ -132,6 +139,9 @@ void SolveRun::solve_from(const RunRecord& before)
     observers.stop = session_.interruption.token();
     observers.on_step = [this](const AdaptiveStep& step) { on_step(step); };
     observers.on_progress = [this](const Progress& progress) { display_.show(progress); };
+    if (command_.keep_factors || reused_rays_ > 0) {
+        observers.rows = &rows_;
+    }
     std::optional<AdaptiveStart> from;
     if (!before.cycles.empty()) {
         const CycleRecord& last = before.cycles.back();
@@ -164,8 +174,14 @@ void SolveRun::on_step(const AdaptiveStep& step)
         picture_seconds_ += seconds_since(start);
         session_.interruption.check();
     }
+    if (command_.keep_factors) {
+        session_.writer.write(folder_.path() / factors_file,
+                              encode_factors(rows_, factors_key(input_.scene, step.mesh.arrays(), command_.options,
+                                                                caster_.instruction_set())));
+        session_.interruption.check();
+    }
     record.exposure = exposure_;
-    folder_.finish_cycle(record, seconds_of(step));
+    folder_.finish_cycle(record, seconds_of(step, reused_rays_));
     session_.messages.note(line_of(record, step.seconds));
 }
 
@@ -247,6 +263,21 @@ Json SolveRun::machine() const
             {"instruction_set", caster_.instruction_set()},
             {"host", as_utf8(host)},
             {"ended", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", utc)}};
+}
+
+void solve_into(RunFolder& folder, const SceneInput& input, const RayCaster& caster, const View& view,
+                const SolveCommand& command, const std::vector<std::string>& warnings, Session& session, KeptRows rows)
+{
+    folder.set_warnings(warnings);
+    session.interruption.on_deadline([&] {
+        folder.interrupt();
+        session.writer.abandon();
+    });
+    struct Unhook {
+        Interruption& interruption;
+        ~Unhook() { interruption.on_deadline({}); }
+    } const unhook{session.interruption};
+    SolveRun(input, caster, view, command, folder, session, std::move(rows)).go();
 }
 
 }  // namespace patchlight

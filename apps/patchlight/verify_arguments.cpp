@@ -23,8 +23,11 @@ void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
         ->check(whole_between(0, 9'000'000'000'000'000'000))
         ->type_name("N")
         ->capture_default_str();
+    app.add_flag("--files-only", c.files_only, "trace nothing: are the run's files what it wrote? [off]");
     add_machine(app, c.threads, c.quiet, c.json, "print JSON instead of a summary");
-    app.footer("Paths are traced against the scene's polygons alone, with nothing of the\n"
+    app.footer("First every file of the run is held against its SHA-256 in run.json: exit code 3\n"
+               "where one was changed.\n"
+               "Paths are traced against the scene's polygons alone, with nothing of the\n"
                "solver's. Intervals are of 95 %; the paths' own noise is not counted as error.\n"
                "L2 is relative to the reflected light of all surface; RMS to that of each point,\n"
                "where it is at least a thousandth of the mean.\n"

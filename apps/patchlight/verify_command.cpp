@@ -53,9 +53,26 @@ Verification trace(const Scene& scene, std::size_t elements, const std::vector<D
     return verify_light(scene, caster, points, shown, options, monitor);
 }
 
+/// Whether every file is what the run wrote; tells which isn't.
+bool files_are_whole(const OpenedRun& run, const VerifyCommand& command, const Session& session)
+{
+    const std::vector<FileProblem> problems = check_files(run);
+    for (const FileProblem& problem : problems)
+        session.messages.error("files", fmt::format("{}: {}; solve the run again, or bring the file back",
+                                                    (run.folder / problem.file).string(), problem.cause));
+    if (command.files_only && command.json)
+        write_result(json_text(run, problems));
+    else if (command.files_only && problems.empty())
+        write_result(fmt::format("{}: {} files are what the run wrote\n", command.run, run.record.files.size()));
+    return problems.empty();
+}
+
 int verify(const VerifyCommand& command, Session& session)
 {
     const OpenedRun run = open_run(command.run);
+    if (!files_are_whole(run, command, session)) return 3;
+    if (command.files_only) return 0;
+    session.interruption.check();
     const std::vector<CycleRecord> cycles = cycles_of(run, command);
     const StoredSolution last = solution_of(run, command.cycle);
     const VerifyOptions options{command.points, command.most_paths, command.seed, {}};

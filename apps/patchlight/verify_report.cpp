@@ -159,6 +159,14 @@ std::string json_text(const VerifyReport& report, const Scene& scene)
     return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string json_text(const OpenedRun& run, const std::vector<FileProblem>& problems)
+{
+    Json all{{"schema", "patchlight-files/1"}, {"files", run.record.files.size()}, {"problems", Json::array()}};
+    for (const FileProblem& problem : problems)
+        all["problems"].push_back({{"file", problem.file}, {"cause", problem.cause}});
+    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 std::string summary_text(const VerifyReport& report, const Scene& scene)
 {
     const VerifiedCycle& last = report.cycles.back();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/run/run_record.h"
+#include "apps/run/check_files.h"
 #include "apps/verification/verify.h"
 
 #include <string>
@@ -31,6 +31,8 @@ struct VerifyReport {
 
 /// Infinite numbers become null.
 std::string json_text(const VerifyReport& report, const Scene& scene);
+/// Of --files-only.
+std::string json_text(const OpenedRun& run, const std::vector<FileProblem>& problems);
 std::string summary_text(const VerifyReport& report, const Scene& scene);
 
 }  // namespace patchlight

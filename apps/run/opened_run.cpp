@@ -11,7 +11,7 @@ void clear_run(const std::filesystem::path& folder)
 {
     std::error_code error;
     for (const char* name : {"run.json", "timing.json", "solution.glb", "before.png", "after.png", "compare.png",
-                             "mesh-before.png", "mesh-after.png", "view.exr", "report.html"}) {
+                             "mesh-before.png", "mesh-after.png", "view.exr", "report.html", "factors.bin"}) {
         std::filesystem::remove(folder / name, error);
     }
     for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -72,7 +72,7 @@ StoredSolution solution_of(const OpenedRun& run, const WhichCycle& which)
     if (which.kind == WhichCycle::Kind::last && std::filesystem::is_regular_file(last, error)) {
         return read_solution(last);
     }
-    return read_solution(run.folder / "cycles" / fmt::format("{:02}", record.cycle) / "solution.glb");
+    return read_solution(run.folder / cycle_folder(record.cycle) / "solution.glb");
 }
 
 }  // namespace patchlight

@@ -104,9 +104,10 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
     }
     const bool finished =
         stored.record.status == RunStatus::finished || stored.record.status == RunStatus::not_converged;
-    if (!finished && (stored.version != tool_version() || stored.commit != tool_commit())) {
+    if (!finished && stored.numeric != numeric_version()) {
         throw FolderRefused(
-            fmt::format("{} holds an unfinished run of patchlight {} ({}), this is {} ({}); name a new folder",
+            fmt::format("{} holds an unfinished run of patchlight {} ({}), and this one, {} ({}), may compute other "
+                        "numbers; name a new folder",
                         folder_.string(), stored.version, stored.commit, tool_version(), tool_commit()));
     }
     state_ = finished ? FolderState::finished : FolderState::unfinished;
@@ -122,6 +123,7 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
 void RunFolder::keep_whole_cycles()
 {
     record_.cycles.clear();
+    record_.files.clear();
     for (int cycle = 0;; ++cycle) {
         const std::filesystem::path folder = cycle_folder(cycle);
         FileWriter::sweep(folder);
@@ -131,6 +133,11 @@ void RunFolder::keep_whole_cycles()
                 return;
             }
             record_.cycles.push_back(record);
+            for (const char* name : {"record.json", "solution.glb", "picture.png"}) {
+                if (std::filesystem::exists(folder / name)) {
+                    record_.files[patchlight::cycle_folder(cycle) + '/' + name] = sha256_hex(read_bytes(folder / name));
+                }
+            }
         } catch (const std::exception&) {
             return;
         }
@@ -143,20 +150,23 @@ RunRecord RunFolder::record() const
     return record_;
 }
 
-std::filesystem::path RunFolder::cycle_folder(int cycle) const
+std::string cycle_folder(int cycle)
 {
-    return folder_ / "cycles" / fmt::format("{:02}", cycle);
+    return fmt::format("cycles/{:02}", cycle);
 }
 
 void RunFolder::write(const std::string& name, std::string_view bytes)
 {
     writer_.write(folder_ / name, bytes);
+    const std::string digest = sha256_hex(bytes);
+    const std::lock_guard lock(mutex_);
+    record_.files[name] = digest;
 }
 
 void RunFolder::write_in_cycle(int cycle, const std::string& name, std::string_view bytes)
 {
     FileWriter::make_folder(cycle_folder(cycle));
-    writer_.write(cycle_folder(cycle) / name, bytes);
+    write(patchlight::cycle_folder(cycle) + '/' + name, bytes);
 }
 
 void RunFolder::finish_cycle(const CycleRecord& record, const Json& seconds)
@@ -194,7 +204,11 @@ void RunFolder::finish(RunStatus status, bool converged, const Json& machine)
     record_.converged = converged;
     if (status == RunStatus::interrupted) {
         std::error_code error;
-        std::filesystem::remove_all(cycle_folder(static_cast<int>(record_.cycles.size())), error);
+        const int unfinished = static_cast<int>(record_.cycles.size());
+        std::filesystem::remove_all(cycle_folder(unfinished), error);
+        std::erase_if(record_.files, [&](const auto& file) {
+            return file.first.starts_with(patchlight::cycle_folder(unfinished) + '/');
+        });
     }
     timing_.update(machine);
     writer_.write(folder_ / "timing.json", text_of(timing_));

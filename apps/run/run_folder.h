@@ -30,6 +30,9 @@ private:
     int descriptor_ = -1;
 };
 
+/// Where the files of a cycle are in the folder of its run.
+std::string cycle_folder(int cycle);
+
 enum class FolderState { fresh, unfinished, finished };
 
 /// The folder of one run: knows what is in it, writes it, and keeps other programs out while it is open.
@@ -37,8 +40,8 @@ class RunFolder {
 public:
     /// Looks at `folder` and makes it when it isn't there. Entries named in `also_ours` don't make it foreign.
     /// Throws FolderRefused when it holds anything but a run, a run of another scene or with other options, an
-    /// unfinished run of another version of the program, or when another program is writing it; OutputError when
-    /// it can't be made or written.
+    /// unfinished run of a program with another numeric version, or when another program is writing it; OutputError
+    /// when it can't be made or written.
     RunFolder(std::filesystem::path folder, RunIdentity identity, FileWriter& writer,
               const std::vector<std::string>& also_ours = {});
     RunFolder(const RunFolder&) = delete;
@@ -51,9 +54,9 @@ public:
     Json timing() const { return timing_; }
 
     /// Where a cycle's files are.
-    std::filesystem::path cycle_folder(int cycle) const;
+    std::filesystem::path cycle_folder(int cycle) const { return folder_ / patchlight::cycle_folder(cycle); }
 
-    /// Writes a file of the run. Throws OutputError.
+    /// Writes a file of the run, whose digest run.json will name. Throws OutputError.
     void write(const std::string& name, std::string_view bytes);
     void write_in_cycle(int cycle, const std::string& name, std::string_view bytes);
 

@@ -25,12 +25,10 @@ const ModeNames<Elements>& element_names()
 
 const ModeNames<Solver>& solver_names()
 {
-    static const ModeNames<Solver> names{{"progressive", Solver::progressive},
-                                         {"jacobi", Solver::jacobi},
-                                         {"gauss-seidel", Solver::gauss_seidel},
-                                         {"conjugate-gradient", Solver::conjugate_gradient},
-                                         {"bicgstab", Solver::bicgstab},
-                                         {"hierarchical", Solver::hierarchical}};
+    static const ModeNames<Solver> names{
+        {"progressive", Solver::progressive},   {"jacobi", Solver::jacobi},
+        {"gauss-seidel", Solver::gauss_seidel}, {"conjugate-gradient", Solver::conjugate_gradient},
+        {"bicgstab", Solver::bicgstab},         {"hierarchical", Solver::hierarchical}};
     return names;
 }
 
@@ -101,71 +99,6 @@ Json json_of(const View& view)
             {"forward", json_of(view.forward)},
             {"up", json_of(view.up)},
             {"vertical_fov", view.vertical_fov}};
-}
-
-namespace {
-
-Json json_of(const SolveOptions& options)
-{
-    return {{"solver", name_of(solver_names(), options.solver)},
-            {"tolerance", options.tolerance},
-            {"max_sweeps", options.max_sweeps},
-            {"order", name_of(order_names(), options.order)},
-            {"ambient", options.ambient},
-            {"overshoot", options.overshoot}};
-}
-
-}  // namespace
-
-Json json_of(const AdaptiveOptions& o)
-{
-    return {{"refine", name_of(refine_names(), o.refine)},
-            {"elements", name_of(element_names(), o.elements)},
-            {"direct", name_of(direct_names(), o.direct)},
-            {"iterations", o.iterations},
-            {"target_error", o.target_error},
-            {"max_elements", o.max_elements},
-            {"meshing",
-             {{"max_edge", o.meshing.max_edge},
-              {"min_angle", o.meshing.min_angle},
-              {"max_elements", o.meshing.max_elements}}},
-            {"form_factors",
-             {{"method", name_of(form_factor_names(), o.form_factors.method)},
-              {"directions", name_of(direction_names(), o.form_factors.directions)},
-              {"rays", o.form_factors.rays},
-              {"resolution", o.form_factors.resolution},
-              {"shadow_rays", o.form_factors.shadow_rays},
-              {"small_source", o.form_factors.small_source},
-              {"seed", o.form_factors.seed}}},
-            {"final", json_of(o.final)},
-            {"gather",
-             {{"rays", o.gather.rays},
-              {"shadow_rays", o.gather.shadow_rays},
-              {"small_source", o.gather.small_source},
-              {"crease_angle", o.gather.crease_angle},
-              {"seed", o.gather.seed}}},
-            {"estimate", {{"indicator", name_of(indicator_names(), o.estimate.indicator)}, {"rays", o.estimate.rays}}},
-            {"mark",
-             {{"marking", name_of(marking_names(), o.mark.marking)},
-              {"share", o.mark.share},
-              {"least", o.mark.least},
-              {"smallest", o.mark.smallest},
-              {"local", o.mark.local}}},
-            {"lines",
-             {{"least_saving", o.lines.least_saving},
-              {"secondary_share", o.lines.secondary_share},
-              {"most_secondary", o.lines.most_secondary}}}};
-}
-
-Json json_of(const SceneOptions& o)
-{
-    Json emitters = Json::object();
-    for (const auto& [name, value] : o.emitters) {
-        emitters[name] = json_of(value);
-    }
-    return {{"unit", o.unit},           {"max_reflectance", o.max_reflectance},
-            {"snap", o.snap},           {"all_two_sided", o.all_two_sided},
-            {"two_sided", o.two_sided}, {"emitters", emitters}};
 }
 
 }  // namespace patchlight

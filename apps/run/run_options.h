@@ -58,8 +58,14 @@ Mode mode_of(const ModeNames<Mode>& names, const std::string& word)
 
 /// The effective options as they are written into every result; lengths in metres, angles in degrees.
 Json json_of(const AdaptiveOptions& options);
+/// The way back; a mesh and what is looked at are not in it. Throws SceneError ("run") for what is missing, of another
+/// type or an unknown word.
+AdaptiveOptions adaptive_options_in(const Json& json);
 Json json_of(const SceneOptions& options);
+SceneOptions scene_options_in(const Json& json);
 Json json_of(const View& view);
+/// Throws SceneError ("run"). The aspect is the picture's own unless the JSON has one.
+View view_in(const Json& json);
 Json json_of(const Rgb& value);
 
 }  // namespace patchlight

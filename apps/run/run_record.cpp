@@ -187,7 +187,11 @@ Json json_of(const RunRecord& record)
         energy = json_of(last.energy);
     }
     return {{"schema", schema},
-            {"tool", {{"name", "patchlight"}, {"version", tool_version()}, {"commit", tool_commit()}}},
+            {"tool",
+             {{"name", "patchlight"},
+              {"version", tool_version()},
+              {"commit", tool_commit()},
+              {"numeric", numeric_version()}}},
             {"scene",
              {{"file", as_utf8(id.scene_file)},
               {"sha256", id.scene_sha256},
@@ -201,6 +205,7 @@ Json json_of(const RunRecord& record)
             {"cycles", cycles},
             {"result", result},
             {"energy", energy},
+            {"files", record.files},
             {"status", name_of(record.status)}};
 }
 
@@ -229,10 +234,15 @@ StoredRecord run_record_in(const std::string& text)
         for (const Json& cycle : json.at("cycles")) {
             stored.record.cycles.push_back(cycle_in(cycle));
         }
+        // Runs of the versions before have none.
+        if (json.contains("files")) {
+            stored.record.files = json.at("files").get<std::map<std::string, std::string>>();
+        }
         stored.record.status = status_in(json.at("status").get<std::string>());
         stored.record.converged = json.at("result").is_object() && json.at("result").at("converged").get<bool>();
         stored.version = json.at("tool").at("version").get<std::string>();
         stored.commit = json.at("tool").at("commit").get<std::string>();
+        stored.numeric = json.at("tool").value("numeric", "");
         return stored;
     });
 }

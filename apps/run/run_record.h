@@ -3,6 +3,7 @@
 #include "apps/run/run_options.h"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct RunRecord {
     RunIdentity identity;
     std::vector<std::string> warnings;
     std::vector<CycleRecord> cycles;
+    /// SHA-256 of each file by its path in the folder, but not of run.json, of timing.json, which differs from machine
+    /// to machine, and of stored factors, which hold their own.
+    std::map<std::string, std::string> files;
     RunStatus status = RunStatus::running;
     bool converged = false;
 };
@@ -65,12 +69,18 @@ struct RunRecord {
 std::string tool_version();
 std::string tool_commit();
 
+/// Tells programs apart that may compute other numbers: 16 hexadecimal digits of the SHA-256 of the sources of meshing,
+/// formfactor, solver and apps/run. Another commit that leaves these alone has the same. Compiler, flags and libraries
+/// are not in it.
+std::string numeric_version();
+
 Json json_of(const RunRecord& record);
 
 /// A run.json read back: the record, and who wrote it. Throws SceneError ("run").
 struct StoredRecord {
     RunRecord record;
     std::string version, commit;
+    std::string numeric;  ///< empty: of a program that wrote none
 };
 StoredRecord run_record_in(const std::string& text);
 

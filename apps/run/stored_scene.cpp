@@ -170,6 +170,34 @@ void restore_triangles(const ByteViews& views, Scene& scene)
     }
 }
 
+void store_contact_lines(const Scene& scene, ByteViews& views)
+{
+    std::vector<std::uint32_t> surfaces;
+    std::vector<double> ends;
+    for (const SurfaceLine& line : scene.contact_lines) {
+        surfaces.push_back(line.surface.value);
+        ends.insert(ends.end(), {line.start.x, line.start.y, line.end.x, line.end.y});
+    }
+    if (surfaces.empty()) return;  // glTF knows no empty array
+    views["scene_contact_surfaces"] = bytes_of(surfaces);
+    views["scene_contact_ends"] = bytes_of(ends);
+}
+
+void restore_contact_lines(const ByteViews& views, Scene& scene)
+{
+    if (!views.contains("scene_contact_surfaces")) return;
+    const std::vector<std::uint32_t> surfaces = integers_in(views, "scene_contact_surfaces");
+    const std::vector<double> ends = doubles_in(views, "scene_contact_ends");
+    IntegerReader reader(surfaces);
+    if (ends.size() != 4 * surfaces.size()) {
+        throw SceneError("solution", "the stored scene is cut short");
+    }
+    for (const double* end = ends.data(); !reader.done(); end += 4) {
+        scene.contact_lines.push_back(
+            {SurfaceId(reader.below(scene.surfaces.size())), LineKind::contact, {end[0], end[1]}, {end[2], end[3]}});
+    }
+}
+
 }  // namespace
 
 void store_scene(const Scene& scene, ByteViews& views)
@@ -183,6 +211,7 @@ void store_scene(const Scene& scene, ByteViews& views)
     }
     views["scene_triangles"] = bytes_of(triangles);
     store_surfaces(scene, views);
+    store_contact_lines(scene, views);
 }
 
 Scene restore_scene(const ByteViews& views)
@@ -200,6 +229,7 @@ Scene restore_scene(const ByteViews& views)
     scene.vertices = vectors_in(views, "scene_vertices");
     restore_surfaces(views, scene);
     restore_triangles(views, scene);
+    restore_contact_lines(views, scene);
     return scene;
 }
 
