@@ -170,6 +170,7 @@ struct VerifyCommand {
     std::uint32_t most_paths = 4096;  ///< from each point
     std::uint64_t seed = 1;
     bool files_only = false;
+    bool traces_study = false;  ///< --points was given: a study's cells are path-traced, too
     bool quiet = false;
     bool json = false;
     int threads = 0;
@@ -198,6 +199,41 @@ struct StudyCheckCommand {
     bool json = false;
 };
 
+struct StudyCellCommand {
+    std::string study;
+    std::string folder;                ///< empty: STEM-study in the working directory
+    std::optional<std::size_t> index;  ///< in the whole grid; unset: the reference
+    bool reference = false;
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+
+struct StudyRunCommand {
+    std::string study;
+    std::string folder;    ///< as StudyCellCommand's
+    std::size_t jobs = 1;  ///< at once
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;  ///< of all jobs together
+};
+
+struct StudyTableCommand {
+    std::string study;
+    std::string folder;         ///< as StudyCellCommand's
+    std::string format = "md";  ///< md, csv, json, tex
+    bool seconds = false;
+    bool cycles = false;
+};
+
+struct StudyReportCommand {
+    std::string study;
+    std::string folder;  ///< as StudyCellCommand's
+    std::string page;
+    bool open = false;
+    bool json = false;
+};
+
 /// What only prints: --help and --version.
 struct PrintCommand {
     std::string text;
@@ -205,7 +241,8 @@ struct PrintCommand {
 
 using Command = std::variant<SolveCommand, DemoCommand, InspectCommand, RenderCommand, ProbeCommand, ExportCommand,
                              VerifyCommand, FormFactorsCommand, ValidateCommand, CompareCommand, AnimateCommand,
-                             ReportCommand, StudyCheckCommand, RerunCommand, PrintCommand>;
+                             ReportCommand, RerunCommand, StudyCheckCommand, StudyCellCommand, StudyRunCommand,
+                             StudyTableCommand, StudyReportCommand, PrintCommand>;
 
 /// Throws UsageError ("usage") for whatever isn't exactly understood.
 Command parse_arguments(int argc, const char* const* argv);

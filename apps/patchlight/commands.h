@@ -27,8 +27,12 @@ int run_command(const ValidateCommand& command, Session& session);
 int run_command(const CompareCommand& command, Session& session);
 int run_command(const AnimateCommand& command, Session& session);
 int run_command(const ReportCommand& command, Session& session);
-int run_command(const StudyCheckCommand& command, Session& session);
 int run_command(const RerunCommand& command, Session& session);
+int run_command(const StudyCellCommand& command, Session& session);
+int run_command(const StudyRunCommand& command, Session& session);
+int run_command(const StudyTableCommand& command, Session& session);
+int run_command(const StudyReportCommand& command, Session& session);
+int run_command(const StudyCheckCommand& command, Session& session);
 int run_command(const PrintCommand& command, Session& session);
 
 }  // namespace patchlight

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/patchlight/arguments.h"
+#include "apps/run/stored_solution.h"
 
 #include <string>
 
@@ -15,5 +16,9 @@ struct GivenMesh {
 /// The last mesh of a run, for a scene of the same surfaces: what they are made of may differ. Throws UsageError
 /// ("mesh") where surfaces differ, FolderRefused for what isn't a run, SceneError for a broken one.
 GivenMesh mesh_of_run(const std::string& run, const Scene& scene);
+
+/// The last solution of a run, for a scene of the same surfaces and materials. Throws as mesh_of_run, UsageError
+/// ("reference") where materials differ.
+StoredSolution solution_lit_alike(const std::string& run, const Scene& scene);
 
 }  // namespace patchlight

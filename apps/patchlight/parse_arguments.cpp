@@ -43,8 +43,8 @@ struct Parser {
     CompareCommand compare;
     AnimateCommand animate;
     ReportCommand report;
-    StudyCommands study;
     RerunCommand rerun;
+    StudyCommands study;
     SolveTexts solve_texts;
     RenderTexts render_texts;
     SceneTexts inspect_texts;

@@ -1,13 +1,9 @@
 #include "apps/patchlight/before_after_table.h"
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/cost_estimate.h"
-#include "apps/patchlight/given_mesh.h"
 #include "apps/patchlight/kept_factors.h"
-#include "apps/patchlight/scene_input.h"
-#include "apps/patchlight/seen_points.h"
+#include "apps/patchlight/planned_solve.h"
 #include "apps/patchlight/solve_run.h"
-#include "apps/patchlight/usage_error.h"
-#include "apps/patchlight/view_choice.h"
 #include "apps/report/report_page.h"
 
 #include <fmt/format.h>
@@ -112,9 +108,30 @@ void open_folder(std::optional<RunFolder>& folder, const SolveCommand& command, 
 
 }  // namespace
 
-int run_command(const SolveCommand& given, Session& session)
+int solve_planned(const PlannedSolve& plan, const SceneInput& input, const RayCaster& caster, Session& session)
 {
-    SolveCommand command = given;
+    const SolveCommand& command = plan.command;
+    check_memory(input.scene, command.options, command.memory);
+    check_factors_fit(command, input.scene, session);
+    const std::vector<std::string> warnings = gather_warnings(input, caster, session);
+    session.interruption.check();
+
+    std::optional<RunFolder> folder;
+    open_folder(folder, command, plan.identity, session);
+    if (folder->state() == FolderState::finished) {
+        session.messages.note(fmt::format("{}: this run is finished already", command.run));
+        write_demo_report(command, session);
+        report(*folder, command, session);
+        return 0;
+    }
+    solve_into(*folder, input, caster, plan.view, command, warnings, session,
+               factors_of_run(command, input.scene, caster, session));
+    write_demo_report(command, session);
+    return report(*folder, command, session);
+}
+
+int run_command(const SolveCommand& command, Session& session)
+{
     session.messages.set_quiet(command.quiet);
     std::optional<tbb::global_control> threads;
     if (command.threads > 0) {
@@ -122,40 +139,10 @@ int run_command(const SolveCommand& given, Session& session)
     }
     SceneInput input = load_scene(command.scene);
     session.interruption.check();
-    if (!command.mesh_of.empty()) {
-        GivenMesh given_mesh = mesh_of_run(command.mesh_of, input.scene);
-        command.mesh_sha256 = given_mesh.sha256;
-        command.options.max_elements = command.options.meshing.max_elements = given_mesh.arrays.triangles.size();
-        command.options.mesh = std::move(given_mesh.arrays);
-    }
-    check_memory(input.scene, command.options, command.memory);
-    check_factors_fit(command, input.scene, session);
     const RayCaster caster(input.scene);
-    const View view = command.pictures.pictures ? chosen_view(command.scene.view, input.scene, caster) : View{};
-    if (command.pictures.pictures) {
-        // Stored first: `render` without --view shows what the run's own pictures show.
-        std::erase_if(input.scene.views, [&](const View& other) { return other.name == view.name; });
-        input.scene.views.insert(input.scene.views.begin(), view);
-    }
-    if (!command.for_view.empty()) {
-        command.goal = chosen_view(command.for_view, input.scene, caster);
-        command.options.looked_at = seen_points(input.scene, caster, *command.goal);
-    }
-    const std::vector<std::string> warnings = gather_warnings(input, caster, session);
+    const PlannedSolve plan = plan_solve(command, input, caster);
     session.interruption.check();
-
-    std::optional<RunFolder> folder;
-    open_folder(folder, command, identity_of(input, command, view), session);
-    if (folder->state() == FolderState::finished) {
-        session.messages.note(fmt::format("{}: this run is finished already", command.run));
-        write_demo_report(command, session);
-        report(*folder, command, session);
-        return 0;
-    }
-    solve_into(*folder, input, caster, view, command, warnings, session,
-               factors_of_run(command, input.scene, caster, session));
-    write_demo_report(command, session);
-    return report(*folder, command, session);
+    return solve_planned(plan, input, caster, session);
 }
 
 }  // namespace patchlight

@@ -1,6 +1,8 @@
 #include "apps/patchlight/study_arguments.h"
 
 #include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/study_run_arguments.h"
+#include "apps/patchlight/study_table_arguments.h"
 
 namespace patchlight {
 
@@ -30,10 +32,22 @@ void add_study(CLI::App& app, StudyCommands& commands)
 {
     app.require_subcommand(1);
     add_check(*app.add_subcommand("check", "What a study would do, cell by cell, and what that needs"), commands.check);
+    add_study_run(*app.add_subcommand("run", "All cells and the reference, measured; goes on where it was stopped"),
+                  commands.run);
+    add_study_table(*app.add_subcommand("table", "What a study came to so far, as a table"), commands.table);
+    add_study_report(*app.add_subcommand("report", "What a study came to so far, as one HTML page"), commands.report);
+    add_study_cell(*app.add_subcommand("cell", "One cell, or the reference, as a command of its own"), commands.cell);
 }
 
-Command chosen_study(const CLI::App&, const StudyCommands& commands)
+Command chosen_study(const CLI::App& app, const StudyCommands& commands)
 {
+    if (app.got_subcommand("run")) return commands.run;
+    if (app.got_subcommand("cell")) return commands.cell;
+    if (app.got_subcommand("table")) return commands.table;
+    if (app.got_subcommand("report")) {
+        finish_study_report(commands.report);
+        return commands.report;
+    }
     return commands.check;
 }
 

@@ -9,6 +9,10 @@ namespace patchlight {
 /// The commands of `patchlight study`; filled in while the line is parsed.
 struct StudyCommands {
     StudyCheckCommand check;
+    StudyRunCommand run;
+    StudyCellCommand cell;
+    StudyTableCommand table;
+    StudyReportCommand report;
 };
 
 void add_study(CLI::App& app, StudyCommands& commands);

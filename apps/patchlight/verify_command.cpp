@@ -1,36 +1,20 @@
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/progress_display.h"
+#include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/verify_report.h"
-#include "solver/element_light.h"
+#include "apps/study/check_study.h"
+#include "apps/study/shown_points.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <chrono>
-#include <cmath>
 #include <ctime>
 #include <optional>
 
 namespace patchlight {
 
 namespace {
-
-/// The run's reconstruction as probing shows it, and its patches' estimates, √(η²/A).
-std::vector<ShownPoint> shown_at(const StoredSolution& stored, const std::vector<DrawnPoint>& points)
-{
-    const PatchLocator locator(stored.mesh);
-    const ElementLight light{stored.mesh, locator, stored.vertex_B, &stored.middle_B};
-    std::vector<ShownPoint> shown(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const SurfaceId surface = points[i].surface;
-        const Vec2 q = stored.scene.surface(surface).frame.to_plane(points[i].position);
-        const PatchId patch = locator.locate(surface, static_cast<float>(q.x), static_cast<float>(q.y));
-        if (!patch.valid()) continue;
-        shown[i] = {light.at(patch, q) - stored.scene.material_of(surface).emission,
-                    stored.eta[patch] / std::sqrt(stored.mesh.area(patch))};
-    }
-    return shown;
-}
 
 /// The cycles to verify, the one that was asked for last.
 std::vector<CycleRecord> cycles_of(const OpenedRun& run, const VerifyCommand& command)
@@ -100,6 +84,34 @@ int verify(const VerifyCommand& command, Session& session)
     return 0;
 }
 
+/// The files of all runs of a study; with --points each cell is path-traced, too.
+int verify_study(const VerifyCommand& command, Session& session)
+{
+    const StudyFolder folder{command.run};
+    if (command.json && command.traces_study) {
+        throw UsageError("usage", "--json: of a study it tells of files alone; leave out --points");
+    }
+    const StudyCheck check = check_study(folder);
+    for (const FileProblem& problem : check.problems)
+        session.messages.error("files", fmt::format("{}: {}; run the study again, or bring the file back",
+                                                    (folder.root / problem.file).string(), problem.cause));
+    if (command.json)
+        write_result(json_text(check));
+    else if (check.problems.empty())
+        write_result(
+            fmt::format("{}: {} files of {} runs are what was written\n", command.run, check.files, check.runs.size()));
+    if (!check.problems.empty()) return 3;
+    for (const std::filesystem::path& run : check.runs) {
+        if (!command.traces_study || run.parent_path().parent_path().filename() != "cells") continue;
+        session.interruption.check();
+        write_result(fmt::format("\n{}\n", run.string()));
+        VerifyCommand own = command;
+        own.run = run.string();
+        verify(own, session);
+    }
+    return 0;
+}
+
 }  // namespace
 
 int run_command(const VerifyCommand& command, Session& session)
@@ -110,7 +122,7 @@ int run_command(const VerifyCommand& command, Session& session)
         threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(command.threads));
     }
     try {
-        return verify(command, session);
+        return is_study_folder(command.run) ? verify_study(command, session) : verify(command, session);
     } catch (const Interrupted&) {
         session.messages.note("interrupted");
         return session.interruption.exit_code();

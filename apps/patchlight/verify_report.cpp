@@ -130,6 +130,14 @@ double mean_light(const std::vector<MeasuredPoint>& points)
     return points.empty() ? 0 : std::sqrt(std::max(0.0, sum) / static_cast<double>(points.size()));
 }
 
+std::string json_text(Json all, const std::vector<FileProblem>& problems)
+{
+    all["problems"] = Json::array();
+    for (const FileProblem& problem : problems)
+        all["problems"].push_back({{"file", problem.file}, {"cause", problem.cause}});
+    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
 VerifiedCycle verified_cycle(const CycleRecord& record, const VerifiedSolution& solution)
@@ -161,10 +169,13 @@ std::string json_text(const VerifyReport& report, const Scene& scene)
 
 std::string json_text(const OpenedRun& run, const std::vector<FileProblem>& problems)
 {
-    Json all{{"schema", "patchlight-files/1"}, {"files", run.record.files.size()}, {"problems", Json::array()}};
-    for (const FileProblem& problem : problems)
-        all["problems"].push_back({{"file", problem.file}, {"cause", problem.cause}});
-    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text({{"schema", "patchlight-files/1"}, {"files", run.record.files.size()}}, problems);
+}
+
+std::string json_text(const StudyCheck& check)
+{
+    return json_text({{"schema", "patchlight-files/1"}, {"runs", check.runs.size()}, {"files", check.files}},
+                     check.problems);
 }
 
 std::string summary_text(const VerifyReport& report, const Scene& scene)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/run/check_files.h"
+#include "apps/study/check_study.h"
 #include "apps/verification/verify.h"
 
 #include <string>
@@ -33,6 +34,8 @@ struct VerifyReport {
 std::string json_text(const VerifyReport& report, const Scene& scene);
 /// Of --files-only.
 std::string json_text(const OpenedRun& run, const std::vector<FileProblem>& problems);
+/// The same of a study's folder.
+std::string json_text(const StudyCheck& check);
 std::string summary_text(const VerifyReport& report, const Scene& scene);
 
 }  // namespace patchlight

@@ -1,6 +1,7 @@
 #include "apps/report/report_data.h"
 
 #include "apps/imaging/line_overlay.h"
+#include "apps/report/page_markup.h"
 #include "apps/run/stored_scene.h"
 #include "apps/run/stored_snapshots.h"
 
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace patchlight {
 
@@ -114,11 +114,11 @@ Json line_kinds_json()
     return kinds;
 }
 
-/// Of timing.json what the page shows; the host's name is nobody's business. Without the file, or where a build is to
-/// be reproducible (reproducible-builds.org): null.
+/// Of timing.json what the page shows; the host's name is nobody's business. Null without the file, or where seconds
+/// are left out.
 Json timing_of(const std::filesystem::path& folder)
 {
-    if (std::getenv("SOURCE_DATE_EPOCH") != nullptr) return nullptr;
+    if (leaves_out_seconds()) return nullptr;
     try {
         const Json stored = Json::parse(read_bytes(folder / "timing.json"));
         Json out = Json::object();

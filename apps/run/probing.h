@@ -21,10 +21,11 @@ struct ProbePoint {
     Vec3 position{0.0};
     std::optional<Vec3> normal;             ///< the side that is asked for, any length > 0
     std::array<std::string, 3> as_written;  ///< x, y, z as they stand in the file
+    std::optional<Rgb> B{};                 ///< what is known there, W/m²
 };
 
-/// Reads x,y,z[,nx,ny,nz] rows. A first line with names is a header: columns are then found by name and others
-/// left out. Blank lines are left out. Throws PointsError.
+/// Reads x,y,z[,nx,ny,nz] rows. A first line with names is a header: columns are then found by name, Br,Bg,Bb too, and
+/// others left out. Blank lines are left out. Throws PointsError.
 std::vector<ProbePoint> read_points(std::string_view text, const std::string& name);
 
 /// What a point shows.

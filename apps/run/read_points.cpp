@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -9,9 +10,9 @@ namespace patchlight {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
+constexpr std::array<std::string_view, 9> names{"x", "y", "z", "nx", "ny", "nz", "br", "bg", "bb"};
 constexpr std::size_t absent = static_cast<std::size_t>(-1);
-using Columns = std::array<std::size_t, 6>;
+using Columns = std::array<std::size_t, names.size()>;
 
 std::string_view trimmed(std::string_view text)
 {
@@ -70,7 +71,8 @@ public:
             if (width_ != 3 && width_ != 6) {
                 fail(fmt::format("{} values; a row is x,y,z or x,y,z,nx,ny,nz", width_));
             }
-            columns_ = {0, 1, 2, width_ == 6 ? 3 : absent, width_ == 6 ? 4 : absent, width_ == 6 ? 5 : absent};
+            columns_.fill(absent);
+            for (std::size_t k = 0; k < width_; ++k) columns_[k] = k;
         }
         row(fields);
     }
@@ -111,10 +113,18 @@ private:
                 fail(fmt::format("the header has no column \"{}\"", names[k]));
             }
         }
-        const bool some = columns_[3] != absent || columns_[4] != absent || columns_[5] != absent;
-        if (some && (columns_[3] == absent || columns_[4] == absent || columns_[5] == absent)) {
-            fail("the header has only part of nx,ny,nz");
+        for (std::size_t k = 3; k < names.size(); k += 3) {
+            const auto given = columns_.begin() + static_cast<std::ptrdiff_t>(k);
+            const auto missing = std::count(given, given + 3, absent);
+            if (missing == 1 || missing == 2) {
+                fail(fmt::format("the header has only part of {}", k == 3 ? "nx,ny,nz" : "Br,Bg,Bb"));
+            }
         }
+    }
+
+    Vec3 three(const std::vector<std::string_view>& fields, std::size_t k) const
+    {
+        return {value(fields, k), value(fields, k + 1), value(fields, k + 2)};
     }
 
     double value(const std::vector<std::string_view>& fields, std::size_t column) const
@@ -133,16 +143,20 @@ private:
             fail(fmt::format("{} values where the first row has {}", fields.size(), width_));
         }
         ProbePoint point;
-        point.position = {value(fields, 0), value(fields, 1), value(fields, 2)};
+        point.position = three(fields, 0);
         for (std::size_t k = 0; k < 3; ++k) {
             point.as_written[k] = std::string(fields[columns_[k]]);
         }
         if (columns_[3] != absent) {
-            const Vec3 normal{value(fields, 3), value(fields, 4), value(fields, 5)};
+            const Vec3 normal = three(fields, 3);
             if (!(glm::length(normal) > 0) || !std::isfinite(glm::length(normal))) {
                 fail("the normal has no length");
             }
             point.normal = normal;
+        }
+        // `probe` leaves them empty where no surface is.
+        if (columns_[6] != absent && !fields[columns_[6]].empty()) {
+            point.B = three(fields, 6);
         }
         points_.push_back(point);
     }

@@ -4,6 +4,7 @@
 #include "apps/run/run_record.h"
 #include "apps/run/stored_solution.h"
 
+#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -20,8 +21,9 @@ public:
 /// Keeps other programs out of a folder while it lives. Leaves no file behind.
 class FolderLock {
 public:
-    /// Throws FolderRefused when another program holds it, OutputError when the folder can't be opened.
-    explicit FolderLock(const std::filesystem::path& folder);
+    /// Throws FolderRefused when another program holds it and doesn't let go in time, OutputError when the folder can't
+    /// be opened.
+    explicit FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience = {});
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
     ~FolderLock();

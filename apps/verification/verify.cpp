@@ -1,44 +1,14 @@
 #include "apps/verification/verify.h"
 
+#include "apps/verification/found_light.h"
+
 #include <algorithm>
-#include <array>
 
 namespace patchlight {
 
 namespace {
 
-/// Independent streams of paths a point: their spread gives the variance.
-constexpr std::uint32_t streams = 8;
 constexpr std::uint32_t first_round = 16;  // paths of a stream
-
-using Sums = std::array<Rgb, streams>;
-
-/// Paths first … first + count − 1 of every stream of every point.
-std::size_t trace(const PathTracer& tracer, const std::vector<DrawnPoint>& points, std::uint32_t first,
-                  std::uint32_t count, const WorkMonitor& monitor, std::vector<Sums>& sums)
-{
-    const auto work = [&](std::size_t i, PathTracer::Scratch& scratch) {
-        for (std::uint32_t k = 0; k < streams; ++k)
-            tracer.add_paths(points[i], i * streams + k, first, count, sums[i][k], scratch);
-    };
-    return for_each_row<PathTracer::Scratch>(points.size(), monitor, work, 4);
-}
-
-struct Found {
-    Rgb mean{0.0}, variance{0.0};
-};
-
-/// Mean and variance of the mean of a point's streams.
-Found found_by(const Sums& sums, std::uint32_t paths)
-{
-    Found found;
-    for (const Rgb& sum : sums) found.mean += sum / static_cast<double>(paths * streams);
-    for (const Rgb& sum : sums) {
-        const Rgb d = sum / static_cast<double>(paths) - found.mean;
-        found.variance += d * d / static_cast<double>(streams * (streams - 1));
-    }
-    return found;
-}
 
 bool well_known(const MeasuredError& error)
 {
@@ -47,12 +17,12 @@ bool well_known(const MeasuredError& error)
 }
 
 /// Whether all are.
-bool measure(const std::vector<Sums>& sums, std::uint32_t paths, std::uint64_t seed,
+bool measure(const std::vector<PathSums>& sums, std::uint32_t paths, std::uint64_t seed,
              std::vector<VerifiedSolution>& solutions)
 {
     bool enough = true;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        const Found found = found_by(sums[i], paths);
+        const FoundLight found = found_by(sums[i], paths);
         for (VerifiedSolution& solution : solutions) {
             solution.points[i].found = found.mean;
             solution.points[i].variance = found.variance;
@@ -94,9 +64,9 @@ Verification verify_light(const Scene& scene, const RayCaster& caster, const std
     Verification result;
     for (const auto& shown : solutions) result.solutions.push_back(unmeasured(points, shown));
     const PathTracer tracer(scene, caster, seed_of(options, for_paths), options.emitters);
-    const std::uint32_t most = std::max(1U, (options.most_paths + streams - 1) / streams);
-    std::vector<Sums> sums(points.size());
-    for (Sums& of_point : sums) of_point.fill(Rgb(0.0));
+    const std::uint32_t most = std::max(1U, (options.most_paths + path_streams - 1) / path_streams);
+    std::vector<PathSums> sums(points.size());
+    for (PathSums& of_point : sums) of_point.fill(Rgb(0.0));
     for (std::uint32_t done = 0; done < most && !points.empty();) {
         const std::uint32_t next = std::min(most, std::max(first_round, 2 * done));
         WorkMonitor round{monitor.stop, {}};
@@ -104,9 +74,9 @@ Verification verify_light(const Scene& scene, const RayCaster& caster, const std
             round.tell = [&](const WorkState& state) {
                 monitor.tell({(done + state.fraction * (next - done)) / most, result.rays + state.rays});
             };
-        result.rays += trace(tracer, points, done, next - done, round, sums);
+        result.rays += add_paths(tracer, points, {0, points.size(), done, next - done}, round, sums);
         done = next;
-        result.paths = done * streams;
+        result.paths = done * path_streams;
         if (measure(sums, done, seed_of(options, for_intervals), result.solutions)) break;
     }
     return result;

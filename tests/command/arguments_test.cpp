@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, RefusedArguments,
                                            solving({"--threads", "1000000000"})));
 
 INSTANTIATE_TEST_SUITE_P(NotBuiltYet, RefusedArguments,
-                         ::testing::Values(std::vector<std::string>{"study", "run", "a"},
+                         ::testing::Values(std::vector<std::string>{"study", "submit", "a"},
                                            solving({"--refine", "quadratic"}),
                                            solving({"--form-factors", "monte-carlo"}),
                                            solving({"--form-factors", "closed-form"}), solving({"--overshoot"}),

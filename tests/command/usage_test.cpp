@@ -39,8 +39,9 @@ TEST_F(UsageTest, HelpShowsEveryDefault)
 
 TEST_F(UsageTest, EveryOptionOfEveryCommandTellsWhatIsDoneWithoutIt)
 {
-    for (const char* command : {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export",
-                                "report", "formfactors", "validate", "study check"}) {
+    for (const char* command :
+         {"demo", "inspect", "solve", "render", "compare", "animate", "probe", "verify", "export", "report",
+          "formfactors", "validate", "study check", "study run", "study cell", "study table", "study report"}) {
         // An option's lines: its name and value, and indented its text, which ends with what is done without it.
         const std::string help = run(words_of(std::string(command) + " --help")).out;
         std::istringstream lines(help.substr(help.find("\nOptions:\n") + 10));

@@ -89,7 +89,7 @@ TEST(ReportDataTest, FirstAndLastCycleAreAlwaysChosenAndTheOthersEvenly)
 TEST(ReportPageTest, TheProgramHoldsThePage)
 {
     const auto files = report_page_files();
-    ASSERT_EQ(files.size(), 3U);
+    ASSERT_EQ(files.size(), 6U);
     for (const auto& [name, bytes] : files) {
         EXPECT_GT(bytes.size(), 1000U) << name;
         // Would end the element that it stands in.

@@ -38,7 +38,8 @@ TEST(SurfaceProbe, GivesTheLinearReconstructionAlsoOnEdgesAndCorners)
 {
     const StoredSolution s = lit_linearly();
     const SurfaceProbe probe(s);
-    for (const Vec3& p : {Vec3{0.3, 0.4, 0}, Vec3{0.25, 0.5, 0}, Vec3{0, 0, 0}, Vec3{1, 1, 0}, Vec3{1, 0.3, 0}, Vec3{0.5, 0.5, 0}}) {
+    for (const Vec3& p :
+         {Vec3{0.3, 0.4, 0}, Vec3{0.25, 0.5, 0}, Vec3{0, 0, 0}, Vec3{1, 1, 0}, Vec3{1, 0.3, 0}, Vec3{0.5, 0.5, 0}}) {
         const auto answer = probe.at(at(p));
         ASSERT_TRUE(answer);
         // File coordinates around 60 cost a few of the last bits.
@@ -72,6 +73,17 @@ TEST(ProbeCsv, HasARowForEveryPoint)
     const StoredSolution s = lit_linearly();
     const auto points = read_points("x,y,z\n20.0,40,60\n0,0,0\n", "p.csv");
     EXPECT_EQ(probe_csv(points, SurfaceProbe(s).at(points)), "x,y,z,Br,Bg,Bb,surface\n20.0,40,60,1,2,3,0\n0,0,0,,,,\n");
+}
+
+TEST(ReadPoints, TakesWhatIsKnownAtPointsToo)
+{
+    const auto points = read_points("x,y,z,Br,Bg,Bb,surface\n1,2,3,0.5,0.25,0,7\n", "p.csv");
+    ASSERT_EQ(points.size(), 1U);
+    EXPECT_EQ(points[0].B, Rgb(0.5, 0.25, 0));
+    EXPECT_FALSE(points[0].normal);
+    EXPECT_THROW(read_points("x,y,z,Br,Bb\n1,2,3,0.5,0\n", "p.csv"), PointsError);
+    EXPECT_THROW(read_points("x,y,z,Br,Bg,Bb\n1,2,3,1,x,1\n", "p.csv"), PointsError);
+    EXPECT_FALSE(read_points("x,y,z,Br,Bg,Bb\n1,2,3,,,\n", "p.csv")[0].B);
 }
 
 TEST(ReadPoints, TakesHeadersInAnyOrderAndBothLineEnds)
