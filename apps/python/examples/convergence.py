@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import patchlight
-from matplotlib.ticker import NullFormatter, ScalarFormatter
+from matplotlib.ticker import FormatStrFormatter, NullFormatter
 
 BOX = Path(__file__).resolve().parents[3] / "data" / "scenes" / "cornell-box.obj"
 Curve = list[tuple[int, float]]  # elements, relative error
@@ -34,27 +34,28 @@ def uniform_curve(scene: patchlight.Scene, most: int) -> Curve:
 
 
 def adaptive_curve(scene: patchlight.Scene, most: int, options: patchlight.AdaptiveOptions) -> Curve:
-    """All cycles of one solve."""
+    """All cycles of one solve but the first, whose mesh is uniform."""
     curve: Curve = []
     options.max_elements = most
-    patchlight.solve_adaptively(scene, options, lambda step: curve.append((len(step.mesh), step.error.relative)))
+
+    def observe(step: patchlight.AdaptiveStep) -> None:
+        if step.stage != "rough":
+            curve.append((len(step.mesh), step.error.relative))
+
+    patchlight.solve_adaptively(scene, options, observe)
     return curve
 
 
 def plot(curves: dict[str, Curve], file: Path) -> None:
     figure, axes = plt.subplots(figsize=(7, 5), layout="constrained")
     for (name, curve), marker in zip(curves.items(), "os^", strict=True):
-        axes.loglog(*zip(*curve, strict=True), marker=marker, markersize=4, label=name)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(ScalarFormatter())
+        axes.loglog([n for n, _ in curve], [100 * e for _, e in curve], marker=marker, markersize=4, label=name)
+    steps = [digit * 10.0**power for power in range(-3, 6) for digit in (1, 2, 5)]
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        axis.set_ticks([step for step in steps if low <= step <= high])
+        axis.set_major_formatter(FormatStrFormatter("%g"))
         axis.set_minor_formatter(NullFormatter())
-    ticks = [n for n in (100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000)]
-    elements = [n for curve in curves.values() for n, _ in curve]
-    axes.set_xticks([n for n in ticks if min(elements) / 1.5 <= n <= max(elements) * 1.5])
-    errors = [e for curve in curves.values() for _, e in curve]
-    parts = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1]
-    axes.set_yticks([e for e in parts if min(errors) / 1.5 <= e <= max(errors) * 1.5])
-    axes.set(xlabel="elements", ylabel="estimated relative error", title="Cornell box")
+    axes.set(xlabel="elements", ylabel="estimated relative error, %", title="Cornell box")
     axes.grid(visible=True, which="both", alpha=0.3)
     axes.legend()
     figure.savefig(file, dpi=100, metadata={"Software": None})
