@@ -48,7 +48,7 @@ class LongCalls(unittest.TestCase):
 
     def test_ctrl_c_ends_one_step_within_a_second(self) -> None:
         scene, options = box(), patchlight.AdaptiveOptions()
-        options.form_factors = patchlight.FormFactorOptions(rays=65536)
+        options.form_factors = patchlight.FormFactorOptions(rays=16384)
         emitted = patchlight.emitted_light(scene, options)
         mesh = patchlight.triangulate(scene, patchlight.MeshingOptions(max_elements=5000))
         exchange = patchlight.Exchange(scene, patchlight.RayCaster(scene), mesh, emitted)
