@@ -65,7 +65,7 @@ double sum_of(const Rgb& x)
 
 double LinkCheck::at_least() const
 {
-    return std::sqrt(std::max(0.0, error * error - uncertainty));
+    return std::sqrt(std::max(0.0, error * error - 2 * uncertainty));
 }
 
 LinkCheck check_links(const Exchange& exchange, const PatchField<Rgb>& rho, const Radiosity& X, const Radiosity& H,

@@ -12,7 +12,7 @@ struct LinkCheck {
     double uncertainty = 0;  ///< standard error of error²
     double bias = 0;  ///< signed: light that links bring too much (+) or too little (−), of all that they bring
 
-    /// √(error² − uncertainty): smaller than this it is by chance only.
+    /// √(error² − 2 uncertainty): smaller than this it is by one chance in forty only.
     double at_least() const;
 };
 

@@ -17,12 +17,12 @@ struct Sweep {
     Rgb change{0.0}, total{0.0};
 };
 
-/// Gathers patches [first, last) from B as it is, then puts the new values into it.
-void gather_block(const RadiositySystem& system, Radiosity& B, std::size_t first, std::size_t last,
+/// Gathers patches [first, last) from B as it is, then puts the new values into it; `light` is B, too.
+void gather_block(const RadiositySystem& system, Radiosity& B, LightLanes& light, std::size_t first, std::size_t last,
                   std::vector<Rgb>& fresh, Sweep& sweep)
 {
     const auto gather = [&](std::size_t i) {
-        fresh[i - first] = system.E[PatchId(i)] + system.rho[PatchId(i)] * gathered(system.F, B, i);
+        fresh[i - first] = system.E[PatchId(i)] + system.rho[PatchId(i)] * gathered(system.F, light, i);
     };
     if (system.F.row_start[last] - system.F.row_start[first] >= worth_threads)
         tbb::parallel_for(first, last, gather);
@@ -33,6 +33,7 @@ void gather_block(const RadiositySystem& system, Radiosity& B, std::size_t first
         sweep.change += system.area[p] * glm::abs(fresh[i - first] - B[p]);
         sweep.total += system.area[p] * fresh[i - first];
         B[p] = fresh[i - first];
+        light.set(p, B[p]);
     }
 }
 
@@ -47,12 +48,13 @@ SolveReport solve_gathering(const RadiositySystem& system, Radiosity& B, const S
     for (const Rgb& rho : system.rho.values()) rho_max = glm::max(rho_max, rho);
     // Jacobi is one block.
     const std::size_t n = B.size(), blocks = options.solver == Solver::jacobi ? 1 : std::min(n, most_blocks);
+    LightLanes light(B);
     std::vector<Rgb> fresh(n / std::max<std::size_t>(1, blocks) + 1);
     while (report.iterations < static_cast<std::size_t>(options.max_sweeps) && !report.converged) {
         Sweep sweep;
         for (std::size_t b = 0; b < blocks; ++b) {
             if (monitor.stop.stop_requested()) throw Interrupted();
-            gather_block(system, B, b * n / blocks, (b + 1) * n / blocks, fresh, sweep);
+            gather_block(system, B, light, b * n / blocks, (b + 1) * n / blocks, fresh, sweep);
         }
         ++report.iterations;
         report.residual = 0;

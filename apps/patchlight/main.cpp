@@ -8,6 +8,8 @@
 #include <csignal>
 #include <exception>
 #include <new>
+#include <string_view>
+#include <unistd.h>
 
 namespace patchlight {
 
@@ -17,6 +19,28 @@ int run(int argc, const char* const* argv, Session& session)
 {
     const Command command = parse_arguments(argc, argv);
     return std::visit([&](const auto& chosen) { return run_command(chosen, session); }, command);
+}
+
+/// Set once in main, for last_words() alone: a terminate handler is given nothing.
+FileWriter* unfinished_files = nullptr;
+
+/// Where nothing can be thrown any more: no memory even for that, or on a thread that nobody waits for. Allocates
+/// nothing; whole files stay, temporaries go.
+[[noreturn]] void last_words()
+{
+    static constexpr std::string_view memory = "error[memory]: not enough memory; ask for fewer elements or rays\n";
+    static constexpr std::string_view other = "error[internal]: ended by an error that nothing could take\n";
+    int code = 1;
+    std::string_view text = other;
+    try {
+        if (std::current_exception()) std::rethrow_exception(std::current_exception());
+    } catch (const std::bad_alloc&) {
+        code = 5;
+        text = memory;
+    } catch (...) {}
+    if (unfinished_files != nullptr) unfinished_files->abandon();
+    (void)!::write(STDERR_FILENO, text.data(), text.size());
+    ::_exit(code);
 }
 
 constexpr const char* interrupted = "interrupted; the same command goes on from the last finished cycle";
@@ -75,6 +99,8 @@ int main(int argc, char** argv)
     patchlight::Messages messages;
     patchlight::Interruption interruption([&] { messages.close(patchlight::interrupted); });
     patchlight::FileWriter writer;
+    patchlight::unfinished_files = &writer;
+    std::set_terminate(patchlight::last_words);
     patchlight::Session session{messages, interruption, writer};
     return patchlight::run_and_report(argc, argv, session);
 }

@@ -19,8 +19,8 @@ namespace patchlight {
 
 namespace {
 
-/// Processor seconds of a path, a few reflections long, with its rays to the emitters.
-constexpr double seconds_per_path = 2e-6;
+/// Processor seconds of a path in the Cornell box, a few reflections long, with its rays to the emitters.
+constexpr double seconds_per_path = 1e-6;
 
 /// The file, and how it is read.
 std::string scene_key(const SceneArguments& arguments)

@@ -53,6 +53,14 @@ private:
     int value_;
 };
 
+/// Some file systems can't, and say so; that is not for us to mend.
+void sync(const Descriptor& descriptor, const std::filesystem::path& file)
+{
+    if (::fsync(descriptor.get()) != 0 && errno != EINVAL && errno != EROFS) {
+        fail(file, errno);
+    }
+}
+
 void write_temporary(const std::string& temporary, const std::function<void(const FileWriter::Sink&)>& produce,
                      const std::filesystem::path& file)
 {
@@ -61,17 +69,15 @@ void write_temporary(const std::string& temporary, const std::function<void(cons
         fail(file, errno);
     }
     produce([&](std::span<const unsigned char> bytes) { write_all(out.get(), bytes, file); });
-    if (::fsync(out.get()) != 0 && errno != EINVAL && errno != EROFS) {
-        fail(file, errno);
-    }
+    sync(out, file);
 }
 
-/// A rename is only on the disk once its folder is.
-void sync_folder(const std::filesystem::path& folder)
+/// A rename is only on the disk once its folder is. A folder that may be written and not read can't be synced.
+void sync_folder(const std::filesystem::path& folder, const std::filesystem::path& file)
 {
     const Descriptor entry(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (entry.get() >= 0) {
-        (void)::fsync(entry.get());
+        sync(entry, file);
     }
 }
 
@@ -107,7 +113,7 @@ void FileWriter::write_pieces(const std::filesystem::path& file, const std::func
         unfinished_.erase(temporary);
         throw;
     }
-    sync_folder(folder);
+    sync_folder(folder, file);
 }
 
 void FileWriter::write(const std::filesystem::path& file, std::string_view text)

@@ -134,6 +134,13 @@ INSTANTIATE_TEST_SUITE_P(Verify, RefusedArguments,
                                            std::vector<std::string>{"verify", "a", "--threads", "0"},
                                            std::vector<std::string>{"verify", "a", "b"}));
 
+INSTANTIATE_TEST_SUITE_P(Rerun, RefusedArguments,
+                         ::testing::Values(std::vector<std::string>{"rerun"}, std::vector<std::string>{"rerun", "a"},
+                                           std::vector<std::string>{"rerun", "a", "-o", "b", "--memory", "much"},
+                                           std::vector<std::string>{"rerun", "a", "-o", "b", "--max-elements", "9"},
+                                           solving({"--keep-factors"}),
+                                           solving({"--keep-factors", "--refine", "both"})));
+
 std::vector<std::string> exporting(std::vector<std::string> words)
 {
     words.insert(words.begin(), {"export", "run"});

@@ -163,7 +163,7 @@ TEST_F(ConfigurationTest, TheCommandLineWins)
     // A given mesh has no other refinement: what the file says about one is not asked for.
     write_text(path("d.toml"), "refine = \"both\"\nrays = 32\nvertex_rays = 16\n");
     const auto mesh = nlohmann::json::parse(record({"--mesh", path("a"), "--config", path("d.toml")}, "c"));
-    EXPECT_EQ(mesh["options"]["refine"], "none");
+    EXPECT_EQ(mesh["options"]["solve"]["refine"], "none");
 }
 
 TEST_F(ConfigurationTest, BadOnesAreRefusedWithThePlace)

@@ -1,6 +1,8 @@
+#include "apps/run/sha256.h"
 #include "apps/run/stored_solution.h"
 #include "tests/command/command_runner.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -75,7 +77,14 @@ TEST_F(VerifyTest, MeasuresAPerturbationOfWhatIsStored)
     StoredSolution s = read_solution(file);
     const Rgb E = s.scene.materials.front().emission;
     for (Rgb& B : s.vertex_B.values()) B = E + 1.02 * (B - E);
+    const std::string before = sha256_hex(text_of(file));
     write_text(file, encode_solution(s.scene, s.mesh, s.B, s.vertex_B, s.eta, s.edge));
+    EXPECT_EQ(run({"verify", path("run")}).code, 3) << "a changed file";
+    // As if the run had written it: the last cycle's, too, for one digest stands for both.
+    const std::string last = fmt::format("run/cycles/{:02}/solution.glb", exact.at("cycle").get<int>());
+    write_text(path(last), text_of(file));
+    write_text(path("run/run.json"),
+               std::regex_replace(text_of(path("run/run.json")), std::regex(before), sha256_hex(text_of(file))));
     const json off = verified({"--points", "500", "--paths", "1024"});
     // The interval, and the solver's own error.
     EXPECT_LT(off.at("l2_ci").at(0), 0.021);

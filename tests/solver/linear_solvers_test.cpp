@@ -1,9 +1,11 @@
 // All solvers of one system: they agree with elimination, and take the steps they are known to take.
+#include "formfactor/random_numbers.h"
 #include "tests/solver/linear_systems.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -121,11 +123,40 @@ TEST(LinearSolvers, TakeTheKnownStepsOnTheCube)
 int row_by_row_to(const RadiositySystem& system, const Radiosity& exact, double error)
 {
     Radiosity B = system.E;
+    LightLanes light(B);
     int sweeps = 0;
     while (relative_error(system, exact, B) > error && ++sweeps < 100)
-        for (std::size_t i = 0; i < B.size(); ++i)
-            B[PatchId(i)] = system.E[PatchId(i)] + system.rho[PatchId(i)] * gathered(system.F, B, i);
+        for (std::size_t i = 0; i < B.size(); ++i) {
+            const PatchId p(i);
+            B[p] = system.E[p] + system.rho[p] * gathered(system.F, light, i);
+            light.set(p, B[p]);
+        }
     return sweeps;
+}
+
+// Each sum of a row is kept in four parts, which are added as (0 + 1) + (2 + 3): the very bits, whatever the processor
+// has, for rows of every length up to two rounds of sixteen entries and a rest.
+TEST(LinearSolvers, RowsAreAddedInTheOrderThatIsPromised)
+{
+    constexpr std::size_t most = 37;
+    Radiosity B(most);
+    for (std::size_t i = 0; i < most; ++i) {
+        RandomNumbers random(5, i);
+        B[PatchId(i)] = Rgb(random.uniform(), 100 * random.uniform(), 1e-3 * random.uniform());
+    }
+    const LightLanes light(B);
+    for (std::size_t count = 0; count <= most; ++count) {
+        FormFactorMatrix F;
+        F.row_start = {0, count};
+        for (std::size_t k = 0; k < count; ++k) {
+            F.columns.push_back(static_cast<std::uint32_t>(k * 11 % most));
+            F.factors.push_back(1 / (3.0 + static_cast<double>(k)));
+        }
+        std::array<Rgb, 4> parts{Rgb(0.0), Rgb(0.0), Rgb(0.0), Rgb(0.0)};
+        for (std::size_t k = 0; k < count; ++k)
+            parts[k < count / 16 * 16 ? k % 4 : 0] += F.factors[k] * B[PatchId(F.columns[k])];
+        EXPECT_EQ(gathered(F, light, 0), (parts[0] + parts[1]) + (parts[2] + parts[3])) << count;
+    }
 }
 
 // Blocks of patches gather at once, for the threads' sake: at most one sweep more, on whole walls as on 16 surfaces.
