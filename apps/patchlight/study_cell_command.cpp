@@ -1,8 +1,10 @@
 #include "apps/patchlight/commands.h"
 #include "apps/patchlight/given_mesh.h"
 #include "apps/patchlight/progress_display.h"
+#include "apps/patchlight/seen_points.h"
 #include "apps/patchlight/study_plan.h"
 #include "apps/patchlight/usage_error.h"
+#include "apps/patchlight/view_choice.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -77,7 +79,11 @@ std::vector<ReferencePoint> found_reference(const StudyPlanner& planner, const S
 {
     const StudyReference& reference = planner.study().reference;
     const Scene& of = scene.input.scene;
-    const std::vector<DrawnPoint> points = reference_points(of, reference, planner.seed());
+    const std::vector<DrawnPoint> points =
+        reference.seen_from.empty()
+            ? reference_points(of, reference, planner.seed())
+            : draw_seen_points(of, scene.caster, chosen_view(reference.seen_from, of, scene.caster), reference.points,
+                               reference_seeds(planner.seed()).points);
     switch (reference.kind) {
     case ReferenceKind::path_traced:
         return traced(planner, scene, points, folder / "blocks", session);

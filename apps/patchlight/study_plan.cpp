@@ -1,6 +1,7 @@
 #include "apps/patchlight/study_plan.h"
 
 #include "apps/patchlight/study_options.h"
+#include "apps/patchlight/view_choice.h"
 #include "apps/run/sha256.h"
 #include "meshing/scene_error.h"
 
@@ -156,6 +157,8 @@ PlannedReference StudyPlanner::find_reference(const StudyCell& cell, StudyScene&
         break;
     }
     planned.key = reference_key(study_.reference, scene.input.scene, seed_, source);
+    if (!study_.reference.seen_from.empty())
+        planned.key["seen_from"] = json_of(chosen_view(study_.reference.seen_from, scene.input.scene, scene.caster));
     planned.id = content_id(planned.key);
     return planned;
 }

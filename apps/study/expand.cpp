@@ -47,6 +47,8 @@ StudyCell cell_at(const Study& study, std::size_t index)
         cell.name += fmt::format("{}{}={}", cell.name.empty() ? "" : " ", option.name, option.value);
         if (study.axes[axis].name == "scene") {
             cell.scene = study.scenes[at[axis]].value;
+        } else if (option.value.empty()) {
+            std::erase_if(cell.options, [&](const OptionText& other) { return other.name == option.name; });
         } else {
             put(cell.options, option);
         }

@@ -39,7 +39,7 @@ struct OptionText {
     TextPlace place;
 };
 
-/// One dimension of the grid.
+/// One dimension of the grid. An empty value leaves the option out.
 struct StudyAxis {
     std::string name;                ///< of the option, or "scene"
     std::vector<OptionText> values;  ///< scenes as written
@@ -65,7 +65,8 @@ std::string name_of(ReferenceKind kind);
 
 struct StudyReference {
     ReferenceKind kind = ReferenceKind::none;
-    std::size_t points = 2000;        ///< area-uniform over all reflecting surface; not of ReferenceKind::points
+    std::size_t points = 2000;  ///< area-uniform over all reflecting surface; not of ReferenceKind::points
+    std::string seen_from;      ///< a camera, as --view names it: the points are what it sees, uniform over its picture
     std::uint32_t paths = 4096;       ///< path_traced: from each point
     std::vector<OptionText> options;  ///< solution
     std::filesystem::path file;       ///< run, points: as the scenes' paths

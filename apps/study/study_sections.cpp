@@ -68,11 +68,11 @@ Names reference_names(ReferenceKind kind)
 {
     switch (kind) {
     case ReferenceKind::path_traced:
-        return {"kind", "points", "paths"};
+        return {"kind", "points", "seen-from", "paths"};
     case ReferenceKind::solution:
-        return {"kind", "points", "options"};
+        return {"kind", "points", "seen-from", "options"};
     case ReferenceKind::run:
-        return {"kind", "points", "run"};
+        return {"kind", "points", "seen-from", "run"};
     case ReferenceKind::points:
         return {"kind", "file"};
     case ReferenceKind::furnace:
@@ -129,6 +129,10 @@ StudyReference reference_in(const TomlFile& toml, const TomlEntry& section, cons
     reference.kind = kind != nullptr ? one_of(toml, *kind, reference_words()) : ReferenceKind::path_traced;
     check_names(toml, entries, reference_names(reference.kind));
     if (const TomlEntry* e = find(entries, "points")) reference.points = toml.whole(*e, 1, 1'000'000);
+    if (const TomlEntry* e = find(entries, "seen-from")) {
+        reference.seen_from = toml.text(*e);
+        if (reference.seen_from.ends_with(".json")) reference.seen_from = beside(file, reference.seen_from).string();
+    }
     if (const TomlEntry* e = find(entries, "paths"))
         reference.paths = static_cast<std::uint32_t>(toml.whole(*e, 8, 100'000'000));
     if (const TomlEntry* e = find(entries, "options")) reference.options = options_in(*e);

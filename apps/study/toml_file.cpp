@@ -253,7 +253,9 @@ std::vector<OptionText> TomlFile::axis_values(const TomlEntry& entry) const
         if (one.is_array()) {
             refuse(place, fmt::format("\"{}\" is a list of lists: an axis has single values", entry.key));
         }
-        values.push_back({entry.name, word(one, entry.key), place});
+        const auto* text = one.as_string();
+        const bool left_out = entry.name != "scene" && text != nullptr && text->get().empty();
+        values.push_back({entry.name, left_out ? std::string() : word(one, entry.key), place});
         if (!seen.insert(values.back().value).second) {
             refuse(place, fmt::format("\"{}\" has the value {} twice", entry.key, values.back().value));
         }

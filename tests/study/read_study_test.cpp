@@ -84,6 +84,18 @@ memory = "4GiB"
 cells = 12
 )";
 
+// One method with an option beside the same without it.
+TEST(ReadStudy, AnEmptyValueLeavesAnOptionOut)
+{
+    const Study study = study_of("scene = \"a.obj\"\n[options]\nview = \"front\"\n[vary]\nview = [\"\", \"side\"]\n");
+    const std::vector<StudyCell> cells = expand(study);
+    ASSERT_EQ(cells.size(), 2u);
+    EXPECT_THAT(words(cells[0].options), ::testing::Not(::testing::Contains(StartsWith("view"))));
+    EXPECT_THAT(words(cells[1].options), ::testing::Contains("view=side"));
+    EXPECT_THAT(study_of("scene = \"a.obj\"\n[reference]\nseen_from = \"front\"\n").reference.seen_from, "front");
+    EXPECT_THAT(refusal_of("scene = \"a.obj\"\n[options]\nview = \"\"\n"), HasSubstr("is empty"));
+}
+
 TEST(ReadStudy, ThreeLinesAreAStudy)
 {
     const Study study = study_of("scene = \"room.obj\"\n[vary]\nmax_elements = [100, 200]\n");
