@@ -66,15 +66,18 @@ std::vector<CellResult> cells_in(const Json& json, const Study& study)
     return cells;
 }
 
-void add_seconds(std::vector<CellResult>& cells, const std::filesystem::path& file)
+void add_timing(std::vector<CellResult>& cells, const std::filesystem::path& file)
 {
     try {
         const Json timing = json_in(file);
-        for (std::size_t c = 0; c < cells.size(); ++c)
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const Json& of_cell = timing.at("cells").at(c);
             for (std::size_t i = 0; i < cells[c].cycles.size(); ++i)
-                cells[c].cycles[i].seconds = timing.at("cells").at(c).at("seconds").at(i).get<double>();
+                cells[c].cycles[i].seconds = of_cell.at("seconds").at(i).get<double>();
+            cells[c].peak_memory = of_cell.at("peak_memory").get<double>();
+        }
     } catch (const std::exception&) {
-        // Only seconds are missing.
+        // Only what the clock said is missing.
     }
 }
 
@@ -115,7 +118,7 @@ ShownStudy stored_study(const StudyFolder& folder)
     } catch (const std::exception& problem) {
         throw SceneError("study", file.string() + ": " + problem.what());
     }
-    add_seconds(shown.result.cells, folder.root / "timing.json");
+    add_timing(shown.result.cells, folder.root / "timing.json");
     shown.pictures = pictures_in(folder, study, shown.result);
     return shown;
 }
