@@ -27,6 +27,13 @@ def kill_group(process):
     process.communicate()
 
 
+def wait_for_a_cycle(study):
+    """Until the first cell is on its way; the others are still to come."""
+    deadline = time.monotonic() + 60
+    while not study.cycles() and time.monotonic() < deadline:
+        time.sleep(0.01)
+
+
 class KilledStudies(unittest.TestCase):
     def test_twenty_kills_leave_no_trace(self):
         study = StudyFolder(self, STUDY)
@@ -68,7 +75,7 @@ class KilledStudies(unittest.TestCase):
     def test_interrupt_ends_within_a_second_and_keeps_all(self):
         study = StudyFolder(self, STUDY)
         process = study.start("--quiet", "--jobs", 2)
-        time.sleep(1.5)
+        wait_for_a_cycle(study)
         os.killpg(process.pid, signal.SIGINT)
         begin = time.monotonic()
         process.communicate(timeout=10)
@@ -82,7 +89,7 @@ class KilledStudies(unittest.TestCase):
     def test_children_of_a_killed_run_stop_and_the_next_run_waits_for_them(self):
         study = StudyFolder(self, STUDY)
         process = study.start("--quiet")
-        time.sleep(1.0)
+        wait_for_a_cycle(study)
         process.kill()  # the parent alone
         process.communicate()
         study.run("--quiet")
