@@ -185,11 +185,16 @@ struct RerunCommand {
     int threads = 0;    ///< 0: as many as there are
 };
 
+/// How a command that writes a page was asked to end.
+struct PageOutput {
+    std::string file;
+    bool json = false;  ///< tell in JSON what was written
+    bool open = false;  ///< show it
+};
+
 struct ReportCommand {
     std::string run;
-    std::string page;
-    bool open = false;
-    bool json = false;
+    PageOutput page;
 };
 
 /// What a study would do, and what that would need.
@@ -229,9 +234,7 @@ struct StudyTableCommand {
 struct StudyReportCommand {
     std::string study;
     std::string folder;  ///< as StudyCellCommand's
-    std::string page;
-    bool open = false;
-    bool json = false;
+    PageOutput page;
 };
 
 /// What only prints: --help and --version.

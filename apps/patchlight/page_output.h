@@ -6,13 +6,6 @@
 
 namespace patchlight {
 
-/// How a command that writes a page was asked to end.
-struct PageOutput {
-    std::string file;
-    bool json = false;  ///< tell in JSON what was written
-    bool open = false;  ///< show it
-};
-
 /// Writes the page, tells of it on standard output ({file, bytes} and `more`, in JSON), and shows it with xdg-open when
 /// asked; where that can't be done, it warns. Throws OutputError.
 void write_page(const PageOutput& output, const std::string& html, const Json& more, Session& session);

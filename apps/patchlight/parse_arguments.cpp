@@ -193,7 +193,7 @@ struct Parser {
             return validate;
         }
         if (app.got_subcommand("report")) {
-            finish_report(report);
+            finish_page(report.page);
             return report;
         }
         if (app.got_subcommand("study")) {

@@ -9,10 +9,9 @@ namespace patchlight {
 
 int run_command(const ReportCommand& command, Session& session)
 {
-    const PageOutput output{command.page, command.json, command.open};
     if (const StudyFolder folder{command.run}; is_stored_study(folder)) {
         const ShownStudy study = stored_study(folder);
-        write_page(output, study_page(study, folder), {{"pictures", study.pictures.size()}}, session);
+        write_page(command.page, study_page(study, folder), {{"pictures", study.pictures.size()}}, session);
         return 0;
     }
     const OpenedRun run = open_run(command.run);
@@ -23,7 +22,7 @@ int run_command(const ReportCommand& command, Session& session)
         session.messages.note(
             fmt::format("{} of {} cycles are in it; all would be more than 3 MB", page.cycles.size(), all));
     }
-    write_page(output, page.html, {{"cycles", page.cycles}}, session);
+    write_page(command.page, page.html, {{"cycles", page.cycles}}, session);
     return 0;
 }
 

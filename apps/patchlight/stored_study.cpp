@@ -74,7 +74,7 @@ void add_timing(std::vector<CellResult>& cells, const std::filesystem::path& fil
             const Json& of_cell = timing.at("cells").at(c);
             for (std::size_t i = 0; i < cells[c].cycles.size(); ++i)
                 cells[c].cycles[i].seconds = of_cell.at("seconds").at(i).get<double>();
-            cells[c].peak_memory = of_cell.at("peak_memory").get<double>();
+            cells[c].peak_memory = of_cell.value("peak_memory", 0.0);
         }
     } catch (const std::exception&) {
         // Only what the clock said is missing.

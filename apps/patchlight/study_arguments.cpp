@@ -1,6 +1,7 @@
 #include "apps/patchlight/study_arguments.h"
 
 #include "apps/patchlight/argument_values.h"
+#include "apps/patchlight/report_arguments.h"
 #include "apps/patchlight/study_run_arguments.h"
 #include "apps/patchlight/study_table_arguments.h"
 
@@ -45,7 +46,7 @@ Command chosen_study(const CLI::App& app, const StudyCommands& commands)
     if (app.got_subcommand("cell")) return commands.cell;
     if (app.got_subcommand("table")) return commands.table;
     if (app.got_subcommand("report")) {
-        finish_study_report(commands.report);
+        finish_page(commands.report.page);
         return commands.report;
     }
     return commands.check;

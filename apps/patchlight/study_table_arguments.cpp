@@ -1,6 +1,6 @@
 #include "apps/patchlight/study_table_arguments.h"
 
-#include "apps/patchlight/usage_error.h"
+#include "apps/patchlight/report_arguments.h"
 
 namespace patchlight {
 
@@ -23,19 +23,12 @@ void add_study_table(CLI::App& app, StudyTableCommand& c)
 void add_study_report(CLI::App& app, StudyReportCommand& c)
 {
     app.add_option("study", c.study, "study file")->required()->type_name("STUDY");
-    app.add_option("-o", c.page, "HTML file to write")->required()->type_name("FILE");
     app.add_option("--dir", c.folder, "the study's folder [the study file's name with -study behind it]")
         ->type_name("DIR");
-    app.add_flag("--open", c.open, "show it with xdg-open [off]");
-    app.add_flag("--json", c.json, "print JSON instead of the file's name [off]");
+    add_page(app, c.page);
     app.footer("One file that opens from disk and needs no network: error against elements and\n"
                "seconds, all cells and their pictures at one exposure, comparisons, gates. The\n"
                "pictures are also left in DIR/pictures.");
-}
-
-void finish_study_report(const StudyReportCommand& c)
-{
-    if (!c.page.ends_with(".html")) throw UsageError("usage", "-o: \"" + c.page + "\" doesn't end in .html");
 }
 
 }  // namespace patchlight

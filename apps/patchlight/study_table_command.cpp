@@ -32,7 +32,7 @@ int run_command(const StudyReportCommand& command, Session& session)
     } catch (const OutputError& problem) {
         session.messages.warning(std::string(problem.what()) + "; the page holds the pictures");
     }
-    write_page({command.page, command.json, command.open}, study_page(study, folder),
+    write_page(command.page, study_page(study, folder),
                {{"cells", study.result.cells.size()}, {"pictures", study.pictures.size()}}, session);
     return 0;
 }

@@ -1,4 +1,5 @@
-// Chromium without a screen, and what is asked of its pictures.
+// Chromium without a screen, and what is asked of its pages and pictures.
+import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 
 const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -29,3 +30,27 @@ export const countedPixels = (page, png) => page.evaluate(async (base64) => {
   }
   return { all: data.length / 4, background, colours: colours.size };
 }, png.toString('base64'));
+
+/// Everything that must stay silent.
+export function watch(page, file) {
+  const heard = [];
+  page.on('console', (message) => heard.push(`console ${message.type()}: ${message.text()}`));
+  page.on('pageerror', (error) => heard.push(`error: ${error.message}`));
+  page.on('request', (request) => {
+    const url = request.url();
+    if (url !== file && !url.startsWith('data:') && !url.startsWith('blob:')) heard.push(`request: ${url}`);
+  });
+  return heard;
+}
+
+/// What is seen once all has been drawn.
+export async function picture(page, place = '#views') {
+  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
+  return page.locator(place).screenshot();
+}
+
+export async function expectChange(page, what, act, place) {
+  const before = await picture(page, place);
+  await act();
+  assert.ok(!before.equals(await picture(page, place)), `${what} changes the picture`);
+}

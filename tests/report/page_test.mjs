@@ -10,7 +10,7 @@ import { mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { axeSource, countedPixels, launch } from './browser.mjs';
+import { axeSource, countedPixels, expectChange, launch, picture, watch } from './browser.mjs';
 import { firstHit, levelOf, readSolution } from './solution.mjs';
 
 const [patchlight, scene, modules, output] = process.argv.slice(2);
@@ -32,29 +32,6 @@ function makePage() {
   const file = join(output, 'report.html');
   assert.deepEqual(made(file), made(join(output, 'again.html')), 'the same run gives the same bytes');
   return file;
-}
-
-/// Everything that must stay silent.
-function watch(page, file) {
-  const heard = [];
-  page.on('console', (message) => heard.push(`console ${message.type()}: ${message.text()}`));
-  page.on('pageerror', (error) => heard.push(`error: ${error.message}`));
-  page.on('request', (request) => {
-    const url = request.url();
-    if (url !== file && !url.startsWith('data:') && !url.startsWith('blob:')) heard.push(`request: ${url}`);
-  });
-  return heard;
-}
-
-const picture = async (page, place = '#views') => {
-  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
-  return page.locator(place).screenshot();
-};
-
-async function expectChange(page, what, act, place) {
-  const before = await picture(page, place);
-  await act();
-  assert.ok(!before.equals(await picture(page, place)), `${what} changes the picture`);
 }
 
 const slide = (page, id, value) => page.locator(id).evaluate((slider, to) => {

@@ -10,7 +10,7 @@ import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { axeSource, countedPixels, launch } from './browser.mjs';
+import { axeSource, countedPixels, expectChange, launch, watch } from './browser.mjs';
 
 const [patchlight, scene, modules, output] = process.argv.slice(2);
 const require = createRequire(join(modules, 'x.js'));
@@ -56,28 +56,6 @@ function makePage(file, environment = {}) {
   const env = { ...process.env, ...environment };
   command(['study', 'report', study, '--dir', folder, '-o', file], { env });
   return readFileSync(file);
-}
-
-/// Everything that must stay silent.
-function watch(page, file) {
-  const heard = [];
-  page.on('console', (message) => heard.push(`console ${message.type()}: ${message.text()}`));
-  page.on('pageerror', (error) => heard.push(`error: ${error.message}`));
-  page.on('request', (request) => {
-    const url = request.url();
-    if (url !== file && !url.startsWith('data:') && !url.startsWith('blob:')) heard.push(`request: ${url}`);
-  });
-  return heard;
-}
-
-const drawn = (page) => page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
-
-async function expectChange(page, what, act, place) {
-  await drawn(page);
-  const before = await page.locator(place).screenshot();
-  await act();
-  await drawn(page);
-  assert.ok(!before.equals(await page.locator(place).screenshot()), `${what} changes the picture`);
 }
 
 const column = (page, at) => page.locator('#cells tbody tr').evaluateAll((rows, c) => rows.map((row) => row.cells[c].textContent), at);
