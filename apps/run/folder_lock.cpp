@@ -1,4 +1,4 @@
-#include "apps/run/folder_lock.h"
+#include "apps/run/folderlock.h"
 
 #include "apps/run/run_folder.h"
 
@@ -50,7 +50,7 @@ long holder_of(int descriptor)
 }  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience)
-    : folder_(folder), descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
 {
     if (descriptor_ < 0) {
         throw OutputError(fmt::format("{}: {}", folder.string(), std::generic_category().message(errno)));
@@ -73,17 +73,17 @@ FolderLock::~FolderLock()
     ::close(descriptor_);
 }
 
-void FolderLock::check() const
+void FolderLock::check(const std::filesystem::path& folder) const
 {
     struct stat held {
     }, found{};
-    if (::stat(folder_.c_str(), &found) != 0) {
-        throw OutputError(fmt::format("{}: {}; it was there when this began, and is not made again", folder_.string(),
+    if (::stat(folder.c_str(), &found) != 0) {
+        throw OutputError(fmt::format("{}: {}; it was there when this began, and is not made again", folder.string(),
                                       std::generic_category().message(errno)));
     }
     if (::fstat(descriptor_, &held) == 0 && (held.st_dev != found.st_dev || held.st_ino != found.st_ino)) {
-        throw OutputError(fmt::format("{}: something else has taken the place of the folder that this was writing",
-                                      folder_.string()));
+        throw OutputError(
+            fmt::format("{}: something else has taken the place of the folder that this was writing", folder.string()));
     }
 }
 

@@ -15,11 +15,10 @@ public:
     FolderLock& operator=(const FolderLock&) = delete;
     ~FolderLock();
 
-    /// Throws OutputError when the folder isn't where it was: removed, renamed, or another stands there now.
-    void check() const;
+    /// Throws OutputError when `folder` isn't the one that was locked: removed, renamed, or another stands there now.
+    void check(const std::filesystem::path& folder) const;
 
 private:
-    std::filesystem::path folder_;
     int descriptor_ = -1;
 };
 

@@ -135,7 +135,7 @@ std::string cycle_folder(int cycle)
 
 void RunFolder::write(const std::string& name, std::string_view bytes)
 {
-    lock_.check();
+    lock_.check(folder_);
     writer_.write(folder_ / name, bytes);
     const std::string digest = sha256_hex(bytes);
     const std::lock_guard lock(mutex_);
@@ -144,7 +144,7 @@ void RunFolder::write(const std::string& name, std::string_view bytes)
 
 void RunFolder::write_in_cycle(int cycle, const std::string& name, std::string_view bytes)
 {
-    lock_.check();
+    lock_.check(folder_);
     FileWriter::make_folder(cycle_folder(cycle));
     write(patchlight::cycle_folder(cycle) + '/' + name, bytes);
 }
@@ -197,7 +197,7 @@ void RunFolder::set_warnings(std::vector<std::string> warnings)
 void RunFolder::finish(RunStatus status, bool converged, const Json& machine)
 {
     const std::lock_guard lock(mutex_);
-    lock_.check();
+    lock_.check(folder_);
     record_.status = status;
     record_.converged = converged;
     if (status == RunStatus::interrupted) {
@@ -233,7 +233,7 @@ void RunFolder::interrupt() noexcept
 /// With the mutex held, or before anybody else knows the folder.
 void RunFolder::write_record()
 {
-    lock_.check();
+    lock_.check(folder_);
     RunRecord shown = record_;
     if (interrupted_ && shown.status == RunStatus::running) {
         shown.status = RunStatus::interrupted;
