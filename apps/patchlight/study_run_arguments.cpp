@@ -24,8 +24,9 @@ void add_study_run(CLI::App& app, StudyRunCommand& c)
         ->capture_default_str();
     add_machine(app, c.threads, c.quiet, c.json, "print study.json instead of a summary");
     app.footer("Each cell is a process of its own (study cell). Finished cells are kept, an\n"
-               "interrupted one goes on from its last cycle. Cells that fail, run over the study's\n"
-               "limits or miss their target are named; the others go on, and the exit code is 4.");
+               "interrupted one goes on from its last cycle. Cells that fail, run over the\n"
+               "study's limits or miss their target, and gates that don't hold, are named; the\n"
+               "others go on, and the exit code is 4.");
 }
 
 void add_study_cell(CLI::App& app, StudyCellCommand& c)

@@ -254,7 +254,9 @@ inline void expect_delaunay(const Scene& scene, const PatchMesh& mesh)
             const VertexId a = c[k], b = c[(k + 1) % 3], apex = c[(k + 2) % 3];
             if (!across[k].valid() || fixed.contains({a, b})) continue;
             const auto others = mesh.corners(across[k]);
-            const VertexId far = *std::ranges::find_if(others, [&](VertexId v) { return v != a && v != b; });
+            VertexId far = others[0];
+            for (const VertexId v : others)
+                if (v != a && v != b) far = v;
             wrong += WholePlane::in_circle(at(a), at(b), at(apex), at(far)) &&
                      MeshingPlane::is_thick(at(apex), at(a), at(far)) &&
                      MeshingPlane::is_thick(at(apex), at(far), at(b));
