@@ -1,4 +1,4 @@
-#include "apps/run/folderlock.h"
+#include "apps/run/folder_lock.h"
 
 #include "apps/run/run_folder.h"
 
