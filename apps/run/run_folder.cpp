@@ -133,10 +133,16 @@ std::string cycle_folder(int cycle)
     return fmt::format("cycles/{:02}", cycle);
 }
 
-void RunFolder::write(const std::string& name, std::string_view bytes)
+/// Into this folder and no other that stands in its place by now.
+void RunFolder::put(const std::string& name, std::string_view bytes)
 {
     lock_.check(folder_);
     writer_.write(folder_ / name, bytes);
+}
+
+void RunFolder::write(const std::string& name, std::string_view bytes)
+{
+    put(name, bytes);
     const std::string digest = sha256_hex(bytes);
     const std::lock_guard lock(mutex_);
     record_.files[name] = digest;
@@ -182,7 +188,7 @@ void RunFolder::finish_cycle(const CycleRecord& record, const Json& seconds)
     }
     kept.push_back(seconds);
     timing_["cycles"] = kept;
-    writer_.write(folder_ / "timing.json", text_of(timing_));
+    put("timing.json", text_of(timing_));
 }
 
 void RunFolder::set_warnings(std::vector<std::string> warnings)
@@ -197,7 +203,6 @@ void RunFolder::set_warnings(std::vector<std::string> warnings)
 void RunFolder::finish(RunStatus status, bool converged, const Json& machine)
 {
     const std::lock_guard lock(mutex_);
-    lock_.check(folder_);
     record_.status = status;
     record_.converged = converged;
     if (status == RunStatus::interrupted) {
@@ -209,7 +214,7 @@ void RunFolder::finish(RunStatus status, bool converged, const Json& machine)
         });
     }
     timing_.update(machine);
-    writer_.write(folder_ / "timing.json", text_of(timing_));
+    put("timing.json", text_of(timing_));
     write_record();
     if (status == RunStatus::finished || status == RunStatus::not_converged) {
         state_ = FolderState::finished;
@@ -233,12 +238,11 @@ void RunFolder::interrupt() noexcept
 /// With the mutex held, or before anybody else knows the folder.
 void RunFolder::write_record()
 {
-    lock_.check(folder_);
     RunRecord shown = record_;
     if (interrupted_ && shown.status == RunStatus::running) {
         shown.status = RunStatus::interrupted;
     }
-    writer_.write(folder_ / "run.json", text_of(json_of(shown)));
+    put("run.json", text_of(json_of(shown)));
 }
 
 }  // namespace patchlight

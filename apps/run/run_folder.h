@@ -65,6 +65,7 @@ public:
 private:
     void take(const RunIdentity& identity, const std::vector<std::string>& also_ours);
     void keep_whole_cycles();
+    void put(const std::string& name, std::string_view bytes);
     void write_record();
 
     std::filesystem::path folder_;
