@@ -59,7 +59,8 @@ class Outputs:
     def say(self, name, *words):
         """What is said, without the seconds that it took."""
         said = json.loads(self.go(*words, "--json"))
-        said.pop("seconds", None)
+        for clock in ("seconds", "cpu_seconds"):
+            said.pop(clock, None)
         (self.folder / f"{name}.json").write_text(json.dumps(said))
 
     def write(self):
