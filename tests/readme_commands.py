@@ -35,6 +35,13 @@ def runnable(block):
     return kept
 
 
+def unknown_studies(text, source):
+    """Studies that the README shows and data/studies doesn't hold."""
+    held = {p.read_text() for p in (source / "data/studies").glob("*.toml")}
+    return [m.group(1) for m in re.finditer(r"^```toml\n(.*?)^```\s*$", text, re.MULTILINE | re.DOTALL)
+            if m.group(1) not in held]
+
+
 def copy_of(source, build, folder):
     copy = Path(folder) / "patchlight"
     ours = shutil.ignore_patterns(".git", "build*", "patchlight-demo", "__pycache__")
@@ -59,7 +66,10 @@ def quote(text):
 
 def main():
     source, build = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    blocks = [runnable(b) for b in shell_blocks((source / "README.md").read_text(encoding="utf-8"))]
+    text = (source / "README.md").read_text(encoding="utf-8")
+    for study in unknown_studies(text, source):
+        sys.exit(f"README.md shows a study that isn't in data/studies:\n{study}")
+    blocks = [runnable(b) for b in shell_blocks(text)]
     blocks = [b for b in blocks if b]
     if not blocks:
         sys.exit("README.md has no ```sh block with a command to run")

@@ -6,7 +6,7 @@ namespace patchlight {
 
 void add_report(CLI::App& app, ReportCommand& c)
 {
-    app.add_option("run", c.run, "folder of a run, or of a study that was run")->required()->type_name("RUN|STUDY");
+    app.add_option("run", c.run, "folder of a run, or of a study that was run")->required()->type_name("RUN|DIR");
     app.add_option("-o", c.page, "HTML file to write")->required()->type_name("FILE");
     app.add_flag("--open", c.open, "show it with xdg-open [off]");
     app.add_flag("--json", c.json, "print JSON instead of the file's name [off]");

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace patchlight {
@@ -25,6 +26,14 @@ namespace {
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Bytes that this process has held at once.
+double peak_memory()
+{
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
 std::string_view text_of(const std::vector<unsigned char>& bytes)
@@ -260,6 +269,7 @@ Json SolveRun::machine() const
     std::tm utc{};
     gmtime_r(&now, &utc);
     return {{"seconds", {{"total", seconds_since(start_)}, {"pictures", picture_seconds_}}},
+            {"peak_memory", peak_memory()},
             {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
             {"instruction_set", caster_.instruction_set()},
             {"host", as_utf8(host)},

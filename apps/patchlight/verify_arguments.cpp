@@ -7,7 +7,7 @@ namespace patchlight {
 
 void add_verify(CLI::App& app, VerifyCommand& c, std::string& cycle)
 {
-    app.add_option("run", c.run, "folder of a run, or of a study")->required()->type_name("RUN|STUDY");
+    app.add_option("run", c.run, "folder of a run, or of a study")->required()->type_name("RUN|DIR");
     app.add_option("--points", c.points, "at random over all surface that reflects")
         ->check(whole_between(1, 1'000'000))
         ->each([&c](const std::string&) { c.traces_study = true; })

@@ -44,27 +44,32 @@ Measures measures_of(const StudyPlan& plan)
     return measures;
 }
 
-/// Wall seconds from the run's beginning to the end of each cycle, as far as they are kept.
-std::vector<double> seconds_of(const OpenedRun& run)
+/// What timing.json keeps: wall seconds from the run's beginning to the end of each cycle, and bytes.
+struct Timing {
+    std::vector<double> seconds;
+    double peak_memory = 0;
+};
+
+Timing timing_of(const OpenedRun& run)
 {
-    std::vector<double> seconds(run.record.cycles.size(), 0.0);
+    Timing kept{.seconds = std::vector<double>(run.record.cycles.size(), 0.0)};
     try {
         const Json timing = Json::parse(read_bytes(run.folder / "timing.json"));
         double so_far = 0;
-        for (std::size_t i = 0; i < seconds.size(); ++i) {
+        for (std::size_t i = 0; i < kept.seconds.size(); ++i) {
             for (const auto& stage : timing.at("cycles").at(i).at("seconds")) so_far += stage.get<double>();
-            seconds[i] = so_far;
+            kept.seconds[i] = so_far;
         }
+        kept.peak_memory = timing.value("peak_memory", 0.0);
     } catch (const std::exception&) {
-        // Only seconds are lost.
+        // Only what the clock said is lost.
     }
-    return seconds;
+    return kept;
 }
 
-std::vector<CycleResult> cycles_of(const OpenedRun& run, const Measured& measured)
+std::vector<CycleResult> cycles_of(const OpenedRun& run, const std::vector<double>& seconds, const Measured& measured)
 {
     std::vector<CycleResult> cycles;
-    const std::vector<double> seconds = seconds_of(run);
     std::size_t rays = 0;
     for (std::size_t i = 0; i < run.record.cycles.size(); ++i) {
         const CycleRecord& record = run.record.cycles[i];
@@ -114,7 +119,9 @@ CellResult result_of(const PlannedCell& planned, const StudyFolder& folder, cons
             const OpenedRun run = open_run(folder.run(planned.id));
             result.status = status_of(run.record.status);
             const Measured found = measured(run, measures, folder.cell(planned.id) / "measured.json", writer, stop);
-            result.cycles = cycles_of(run, found);
+            const Timing timing = timing_of(run);
+            result.cycles = cycles_of(run, timing.seconds, found);
+            result.peak_memory = timing.peak_memory;
             result.probes = found.probes;
         } catch (const SceneError& problem) {
             result.status = CellStatus::failed;

@@ -82,7 +82,8 @@ std::string study_timing_json(const StudyResult& result)
     for (const CellResult& cell : result.cells) {
         Json seconds = Json::array();
         for (const CycleResult& cycle : cell.cycles) seconds.push_back(cycle.seconds);
-        cells.push_back({{"index", cell.cell.index}, {"id", cell.id}, {"seconds", seconds}});
+        cells.push_back(
+            {{"index", cell.cell.index}, {"id", cell.id}, {"seconds", seconds}, {"peak_memory", cell.peak_memory}});
     }
     return text_of({{"cells", cells}});
 }

@@ -41,6 +41,7 @@ struct CellResult {
     CellStatus status = CellStatus::waiting;
     std::string message;
     std::vector<CycleResult> cycles;
+    double peak_memory = 0;  ///< bytes, of the process that ended it; 0: not known. As seconds: in timing.json alone
     std::vector<std::optional<Rgb>> probes;  ///< B at the study's points; W/m²
 };
 

@@ -39,6 +39,7 @@ Json json_of(const StudyResult& study, const CellResult& cell, const TableOption
                 {"message", cell.message},
                 {"cycles", cell.cycles.size()},
                 {"result", cell.cycles.empty() ? Json(nullptr) : json_of(cell.cycles.back(), options.seconds)}};
+    if (options.seconds) out["peak_memory"] = cell.peak_memory;
     if (!options.cycles) return out;
     out["cycles"] = Json::array();
     for (const CycleResult& cycle : cell.cycles) out["cycles"].push_back(json_of(cycle, options.seconds));

@@ -105,6 +105,7 @@ TextTable readable_cells(const StudyResult& study, const TableOptions& options)
     column("rate", true);
     column("energy residual", true);
     column("seconds", options.seconds);
+    column("MiB", options.seconds);
     column("status", true, false);
     for (const TableRow& row : rows_of(study, options)) {
         Fields fields = axis_values(study, row.cell);
@@ -120,6 +121,7 @@ TextTable readable_cells(const StudyResult& study, const TableOptions& options)
         add(true, [&](const CycleResult&) { return or_dash(row.rate, order_text); });
         add(true, [](const CycleResult& c) { return rounded(c.energy_residual, 2); });
         add(options.seconds, [](const CycleResult& c) { return rounded(c.seconds, 3); });
+        add(options.seconds, [&](const CycleResult&) { return rounded(row.cell.peak_memory / 1048576, 3); });
         fields.push_back(name_of(row.cell.status));
         table.rows.push_back(std::move(fields));
     }
@@ -143,7 +145,7 @@ TextTable full_cells(const StudyResult& study, const TableOptions& options)
                    "max_error",
                    "rate",
                    "energy_residual"};
-    if (options.seconds) columns.insert(columns.end(), {"seconds", "rate_by_seconds"});
+    if (options.seconds) columns.insert(columns.end(), {"seconds", "rate_by_seconds", "peak_memory"});
     columns.insert(columns.end(), {"status", "message"});
     TextTable table{axis_heads(study, {columns.begin(), columns.end()}), {}, {}};
     table.heads.insert(table.heads.begin(), "cell");
@@ -160,7 +162,9 @@ TextTable full_cells(const StudyResult& study, const TableOptions& options)
                            std::to_string(c->elements), in_full(c->estimated_error), full_or_empty(c->error),
                            bound(&Interval::low), bound(&Interval::high), full_or_empty(c->max_error),
                            full_or_empty(row.rate), in_full(c->energy_residual)});
-            if (options.seconds) fields.insert(fields.end(), {in_full(c->seconds), full_or_empty(row.rate_by_seconds)});
+            if (options.seconds)
+                fields.insert(fields.end(),
+                              {in_full(c->seconds), full_or_empty(row.rate_by_seconds), in_full(row.cell.peak_memory)});
         }
         fields.resize(table.heads.size() - 2);
         fields.insert(fields.end(), {name_of(row.cell.status), row.cell.message});
