@@ -2,8 +2,10 @@
 sampled ones within three of their standard errors; and each reads what the other has written.
 
     python3 tests/reliability/other_build.py COMMAND_A COMMAND_B
+    python3 tests/reliability/other_build.py COMMAND --compiler clang++
     python3 tests/reliability/other_build.py COMMAND --without-avx2
 
+--compiler: builds the other one, some minutes; without that compiler there is nothing to compare, and it says so.
 --without-avx2: the same command, but with the C library's mathematics for machines without AVX2 and FMA.
 PATCHLIGHT_SOURCE names the sources.
 """
@@ -12,6 +14,8 @@ import argparse
 import json
 import math
 import os
+import shutil
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -34,7 +38,8 @@ def answer(side, *words):
 
 
 def factor(side, pair, method):
-    return json.loads(answer(side, "formfactors", disturbed.CORNELL[0], "--between", *pair, "--method", method, "--json"))
+    return json.loads(answer(side, "formfactors", disturbed.CORNELL[0], "--between", *pair, "--method", method,
+                             "--json"))
 
 
 def compare_factors(sides):
@@ -74,20 +79,35 @@ def compare_solves(sides, scratch):
     return bad, others
 
 
+def built_by(compiler, folder):
+    subprocess.run(["cmake", "-S", disturbed.SOURCE, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                    f"-DCMAKE_CXX_COMPILER={compiler}"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", folder, "-j", "2", "--target", "patchlight"], check=True,
+                   stdout=subprocess.DEVNULL)
+    return folder / "patchlight"
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("command", type=Path)
     parser.add_argument("other", type=Path, nargs="?")
+    parser.add_argument("--compiler")
     parser.add_argument("--without-avx2", action="store_true")
     options = parser.parse_args()
-    other = options.other or options.command
-    sides = [(options.command.resolve(), dict(os.environ)),
-             (other.resolve(), os.environ | (NARROW if options.without_avx2 else {}))]
-    apart, errors, bad = compare_factors(sides)
-    print(f"closed-form and exact factors: {apart:.3g} apart at most; sampled: {errors:.3g} standard errors")
-    with tempfile.TemporaryDirectory(prefix="patchlight-builds-") as scratch:
-        unlike, others = compare_solves(sides, Path(scratch))
-    print(f"a solve: {len(others)} files with other bytes {others or ''}")
+    if options.compiler and not shutil.which(options.compiler):
+        print(f"there is no {options.compiler}")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="patchlight-builds-") as made:
+        scratch = Path(made)
+        other = options.other or options.command
+        if options.compiler:
+            other = built_by(options.compiler, scratch / "build")
+        sides = [(options.command.resolve(), dict(os.environ)),
+                 (other.resolve(), os.environ | (NARROW if options.without_avx2 else {}))]
+        apart, errors, bad = compare_factors(sides)
+        print(f"closed-form and exact factors: {apart:.3g} apart at most; sampled: {errors:.3g} standard errors")
+        unlike, others = compare_solves(sides, scratch)
+        print(f"a solve: {len(others)} files with other bytes")
     sys.exit(bad + unlike > 0)
 
 
