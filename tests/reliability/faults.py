@@ -1,4 +1,5 @@
-"""Fails one call after the other of a solve: write, fsync, rename, mkdir, an allocation. Each time the command must end with exit code 6 (5 for memory) and a message, not crash; what was finished before must be whole; no temporary
+"""Fails one call after the other of a solve: write, fsync, rename, mkdir, an allocation. Each time the command must end
+with exit code 6 (5 for memory) and a message, not crash; what was finished before must be whole; no temporary
 file may be left; and the same command without the fault must end with the very files of an undisturbed run.
 
     python3 tests/reliability/faults.py [--every] [--demo] [--kinds write,memory]

@@ -1,4 +1,4 @@
-"""A full disk, a folder that can't be written, and one that is taken away, replaced or wanted by two while it is in use.
+"""A full disk, a folder that can't be written, and one that is taken away, replaced or wanted by two while in use.
 
 PATCHLIGHT_SOURCE and PATCHLIGHT_COMMAND name the sources and the command.
 """

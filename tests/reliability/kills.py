@@ -83,7 +83,7 @@ class Kills:
         return True
 
     def kill_again_and_again(self, count):
-        """Each run ten times. Returns the most cycles that one kill cost, and how many kills came while cycles were done."""
+        """Each run ten times. Returns the most cycles that one kill cost, and how many came while cycles were done."""
         moments = random.Random(11)
         kills, kept, most, early = 0, {}, 0, 0
         self.clean()
@@ -129,13 +129,13 @@ def main():
         moments = random.Random(5)
         met = sum(kills.interrupt(moments.uniform(0, kills.seconds), signal.SIGTERM if i % 2 else signal.SIGINT)
                   for i in range(options.signals))
-        print(f"signals: {options.signals}, {met} before the end of a solve of {kills.seconds:.1f} s; slowest end after "
-              f"{kills.slowest:.2f} s")
+        print(f"signals: {options.signals}, {met} before the end of a solve of {kills.seconds:.1f} s; slowest end "
+              f"after {kills.slowest:.2f} s")
         # A test that only ever meets finished runs shows nothing.
         kills.must(met >= options.signals / 2, "most signals came too late")
         most, early = kills.kill_again_and_again(options.kills)
-        print(f"kills: {options.kills}, {early} while cycles were computed, the others at the pictures; {most} cycle lost at "
-              f"most by one")
+        print(f"kills: {options.kills}, {early} while cycles were computed, the others at the pictures; {most} cycle lost "
+              f"at most by one")
     print(f"{len(kills.problems)} problems")
     sys.exit(bool(kills.problems))
 
