@@ -13,6 +13,7 @@ import argparse
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,9 @@ import disturbed
 KINDS = ("write", "fsync", "rename", "mkdir", "memory")
 # Allocations chosen of some hundred thousand, and every which of the other calls: within a minute, or many.
 ALLOCATIONS, EVERY_ALLOCATIONS, STEP = 16, 1000, 10
+# What ends the program by itself without memory, and can't be kept from it: glibc, when a thread needs the variables of a
+# library that was loaded late, and GLib, which OpenImageIO brings along.
+LIBRARIES_END = {127: "thread-local data: ABORT", -signal.SIGTRAP: "GLib-ERROR"}
 
 
 class Faults:
@@ -60,8 +64,7 @@ class Faults:
         # A library may do without an allocation (a cache, a message); then all must be as without the fault.
         if ended.returncode == 0 and kind == "memory":
             return None if disturbed.digests(self.run) == self.expected else "ended with 0 and other files"
-        # glibc's own end, when there is no memory for a thread's variables of a library that was loaded late.
-        if kind == "memory" and ended.returncode == 127 and "thread-local data: ABORT" in ended.stderr:
+        if kind == "memory" and (words := LIBRARIES_END.get(ended.returncode)) and words in ended.stderr:
             return self.problem_afterwards()
         if ended.returncode != wanted:
             return f"exit code {ended.returncode}, not {wanted}: {ended.stderr[-300:]}"

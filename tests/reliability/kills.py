@@ -134,8 +134,8 @@ def main():
         # A test that only ever meets finished runs shows nothing.
         kills.must(met >= options.signals / 2, "most signals came too late")
         most, early = kills.kill_again_and_again(options.kills)
-        print(f"kills: {options.kills}, {early} while cycles were computed, the others at the pictures; {most} cycle lost "
-              f"at most by one")
+        print(f"kills: {options.kills}, {early} while cycles were computed, the others at the pictures; {most} cycle "
+              f"lost at most by one")
     print(f"{len(kills.problems)} problems")
     sys.exit(bool(kills.problems))
 
