@@ -24,8 +24,8 @@ import disturbed
 KINDS = ("write", "fsync", "rename", "mkdir", "memory")
 # Allocations chosen of some hundred thousand, and every which of the other calls: within a minute, or many.
 ALLOCATIONS, EVERY_ALLOCATIONS, STEP = 16, 1000, 10
-# What ends the program by itself without memory, and can't be kept from it: glibc, when a thread needs the variables of a
-# library that was loaded late, and GLib, which OpenImageIO brings along.
+# What ends the program by itself without memory, and can't be kept from it: glibc, when a thread needs the variables of
+# a library that was loaded late, and GLib, which OpenImageIO brings along.
 LIBRARIES_END = {127: "thread-local data: ABORT", -signal.SIGTRAP: "GLib-ERROR"}
 
 
