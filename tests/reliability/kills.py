@@ -83,13 +83,13 @@ class Kills:
         return True
 
     def kill_again_and_again(self, count):
-        """Each run twenty times. Returns the most cycles that one kill cost, and how many came while cycles were done."""
+        """Each run ten times at most. Returns the most cycles that one kill cost, and how many came while cycles were done."""
         moments = random.Random(11)
         kills, kept, most, early = 0, {}, 0, 0
         self.clean()
         while kills < count:
             process = self.start()
-            time.sleep(moments.uniform(0, 0.4) * self.seconds)
+            time.sleep(moments.uniform(0, 0.9) * self.seconds)
             process.kill()
             _, said = process.communicate()
             what = f"kill {kills + 1}"
@@ -111,8 +111,8 @@ class Kills:
             kept = found
             early += len(found) < sum(name.endswith("record.json") for name in self.expected)
             disturbed.status(self.run)
-            if kills % 20 == 0 or kills == count:
-                # Else all that follow would meet the pictures at the end.
+            if kills % 10 == 0 or kills == count:
+                # A new one, or all that follow would meet the pictures at the end.
                 self.finish(f"after {kills} kills")
                 self.clean()
                 kept = {}
