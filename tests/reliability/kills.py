@@ -83,7 +83,7 @@ class Kills:
         return True
 
     def kill_again_and_again(self, count):
-        """Each run ten times at most. Returns the most cycles that one kill cost, and how many came while cycles were done."""
+        """Each run ten times at most. Returns the most cycles that one cost, and how many came while cycles were done."""
         moments = random.Random(11)
         kills, kept, most, early = 0, {}, 0, 0
         self.clean()
