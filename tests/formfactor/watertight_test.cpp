@@ -18,11 +18,6 @@
 namespace patchlight {
 namespace {
 
-struct Walk {
-    Vec3 place;
-    std::uint32_t surface;
-};
-
 /// Cosine-weighted about the normal.
 Vec3 random_direction(const PlaneFrame& frame, RandomNumbers& random)
 {
@@ -31,30 +26,30 @@ Vec3 random_direction(const PlaneFrame& frame, RandomNumbers& random)
     return x * frame.u + y * frame.v + std::sqrt(std::max(0.0, 1 - x * x - y * y)) * frame.n;
 }
 
-/// One in eight from beside a corner, where rooms leak first, by as much as the ray caster starts off a surface.
-Vec3 random_start(const Scene& scene, const Walk& at, RandomNumbers& random)
+/// The triangles of each surface: rays start inside them, as the solver's do, and not where a ray of single precision
+/// ended.
+std::vector<std::vector<const SceneTriangle*>> triangles_by_surface(const Scene& scene)
 {
-    if (random.below(8) != 0) return at.place;
-    const std::vector<std::uint32_t>& loop = scene.surfaces[at.surface].loops.front();
-    const Vec3& corner = scene.vertices[loop[random.below(static_cast<std::uint32_t>(loop.size()))]];
-    const Vec3 to = at.place - corner;
-    const double far = glm::length(to);
-    return far > 0 ? corner + 2e-6 * scene.diameter / far * to : at.place;
-}
-
-/// Begins at the middles of emitters' triangles, `count` walks side by side.
-std::vector<Walk> begun(const Scene& scene, std::size_t count)
-{
-    std::vector<Walk> lamps, walks;
+    std::vector<std::vector<const SceneTriangle*>> result(scene.surfaces.size());
     for (const SceneTriangle& t : scene.triangles)
         for (const SurfaceId s : {t.front, t.back})
-            if (s.valid() && scene.material_of(s).emits())
-                lamps.push_back(
-                    {(scene.vertices[t.vertices[0]] + scene.vertices[t.vertices[1]] + scene.vertices[t.vertices[2]]) /
-                         3.0,
-                     s.value});
-    for (std::size_t i = 0; i < count; ++i) walks.push_back(lamps[i % lamps.size()]);
-    return walks;
+            if (s.valid()) result[s.value].push_back(&t);
+    return result;
+}
+
+Vec3 random_place(const Scene& scene, const std::vector<const SceneTriangle*>& triangles, RandomNumbers& random)
+{
+    const auto& v = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))]->vertices;
+    const double r = std::sqrt(random.uniform()), q = random.uniform();
+    return (1 - r) * scene.vertices[v[0]] + r * (1 - q) * scene.vertices[v[1]] + r * q * scene.vertices[v[2]];
+}
+
+std::vector<std::uint32_t> lamps_of(const Scene& scene)
+{
+    std::vector<std::uint32_t> lamps;
+    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s)
+        if (scene.material_of(SurfaceId(std::size_t{s})).emits()) lamps.push_back(s);
+    return lamps;
 }
 
 /// How many of `rays` escape.
@@ -63,30 +58,27 @@ std::size_t escaping(const Scene& scene, std::size_t rays)
     constexpr std::size_t side_by_side = 4096, groups = 16;
     const RayCaster caster(scene);
     const std::size_t steps = rays / (side_by_side * groups) + 1;
+    const std::vector<std::uint32_t> lamps = lamps_of(scene);
+    const auto triangles = triangles_by_surface(scene);
     std::atomic<std::size_t> escaped = 0;
     tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t group) {
-        const std::vector<Walk> lamps = begun(scene, side_by_side);
-        std::vector<Walk> walks = lamps;
+        std::vector<std::uint32_t> at(side_by_side);
+        for (std::size_t i = 0; i < side_by_side; ++i) at[i] = lamps[i % lamps.size()];
         RandomNumbers random(7, group);
         RayBatch batch;
         HitBatch hits;
         batch.resize(side_by_side);
         for (std::size_t step = 0; step < steps; ++step) {
             for (std::size_t i = 0; i < side_by_side; ++i) {
-                const PlaneFrame& frame = scene.surfaces[walks[i].surface].frame;
-                batch.set(i, caster.leave(random_start(scene, walks[i], random), frame.n),
+                const PlaneFrame& frame = scene.surfaces[at[i]].frame;
+                batch.set(i, caster.leave(random_place(scene, triangles[at[i]], random), frame.n),
                           random_direction(frame, random), std::numeric_limits<float>::infinity());
             }
             caster.closest(batch, hits);
             for (std::size_t i = 0; i < side_by_side; ++i) {
                 const std::uint32_t surface = hits.surface[i];
                 if (surface == HitBatch::escaped) ++escaped;
-                if (surface >= scene.surfaces.size()) {
-                    walks[i] = lamps[i];
-                } else {
-                    const PlaneFrame& frame = scene.surfaces[surface].frame;
-                    walks[i] = {frame.lift({double{hits.x[i]}, double{hits.y[i]}}), surface};
-                }
+                at[i] = surface < scene.surfaces.size() ? surface : lamps[i % lamps.size()];
             }
         }
     });

@@ -157,7 +157,7 @@ TEST(Invariants, MethodsAreHeldToTheirPromises)
     options.final.solver = Solver::gauss_seidel;
     options.form_factors.method = FormFactorMethod::exact;
     EXPECT_LT(invariant_tolerances(options).reciprocity, 1e-3);
-    EXPECT_LT(invariant_tolerances(options).energy, 0.1);
+    EXPECT_LE(invariant_tolerances(options).energy, 0.1);
 }
 
 class ReconstructedCube : public ::testing::Test {
@@ -183,7 +183,7 @@ TEST_F(ReconstructedCube, NodesAreFiniteAndNotNegative)
 TEST_F(ReconstructedCube, WhatIsBrokenIsNamedWithItsSurface)
 {
     EXPECT_NO_THROW(require_none({}, scene_, mesh_));
-    B_[mesh_.patches_of(SurfaceId(std::size_t{1})).front()] = Rgb(1.0);
+    B_[PatchId(std::size_t{mesh_.patches_of(SurfaceId(std::size_t{1})).first})] = Rgb(1.0);
     try {
         require_none(broken_invariants(scene_, mesh_, B_, nodes_), scene_, mesh_);
         FAIL() << "B is below E, and nobody says so";
