@@ -84,7 +84,12 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
 {
     impl_->isa = instruction_set_of_this_machine();
     impl_->device = rtcNewDevice(("isa=" + impl_->isa).c_str());
-    if (impl_->device == nullptr) complain(rtcGetDeviceError(nullptr), "Embree can't start on this machine");
+    if (impl_->device == nullptr) {
+        // Without memory for its threads it says unknown.
+        const RTCError cause = rtcGetDeviceError(nullptr);
+        if (cause == RTC_ERROR_OUT_OF_MEMORY || cause == RTC_ERROR_UNKNOWN) throw std::bad_alloc();
+        throw std::runtime_error("Embree can't start on this machine");
+    }
     impl_->scene = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);

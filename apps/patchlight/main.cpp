@@ -3,6 +3,7 @@
 #include "apps/run/probing.h"
 #include "apps/study/study.h"
 #include "meshing/scene_error.h"
+#include "solver/invariants.h"
 #include "solver/progress.h"
 
 #include <atomic>
@@ -92,6 +93,9 @@ int run_and_report(int argc, const char* const* argv, Session& session)
     } catch (const LimitError& error) {
         say.error("memory", error.what());
         return 5;
+    } catch (const InvariantError& error) {
+        say.error("invariant", error.what());
+        return 4;
     } catch (const std::bad_alloc&) {
         say.error("memory", "not enough memory; ask for fewer elements or rays");
         return 5;
@@ -99,7 +103,11 @@ int run_and_report(int argc, const char* const* argv, Session& session)
         say.error("output", error.what());
         return 6;
     } catch (const Interrupted&) {
-        say.note(interrupted);
+        if (session.interruption.expired())
+            say.error("time", "--time is over; the same command goes on from the last finished cycle, with a longer "
+                              "--time or without one");
+        else
+            say.note(interrupted);
         return session.interruption.exit_code();
     } catch (const PipeClosed&) {
         return 128 + SIGPIPE;
