@@ -16,6 +16,7 @@ namespace patchlight {
 namespace {
 
 constexpr double default_tolerance = 2e-5;
+constexpr double least_visible = 1e-12;  // of what would be exchanged with nothing in between
 constexpr double look_for_backs = 1e-4;  // rows that miss more may see some
 
 using Triangle = std::array<Vec3, 3>;
@@ -206,8 +207,12 @@ private:
             break;
         }
         ++scratch.counts.partial;
-        return partial_exchange(front_a, n, front_b, m, between, scratch.in_shaft, snap_, unoccluded(),
-                                tolerance_ * std::min(patches_.area[i], patches_.area[j]), scratch.partial);
+        const double all = unoccluded();
+        const double seen =
+            partial_exchange(front_a, n, front_b, m, between, scratch.in_shaft, snap_, all,
+                             tolerance_ * std::min(patches_.area[i], patches_.area[j]), scratch.partial);
+        // The rest of a pair that is hidden, by rounding.
+        return seen > least_visible * all ? seen : 0;
     }
 
     const Scene& scene_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 namespace patchlight {
@@ -36,6 +37,13 @@ PlaneSide side_of(const Scene& scene, const SceneTriangle& triangle, SurfaceId s
     const auto f = [](double x) { return static_cast<float>(x); };
     return {f(p[0].x),          f(p[0].y),          f(p[1].x - p[0].x), f(p[1].y - p[0].y),
             f(p[2].x - p[0].x), f(p[2].y - p[0].y), surface.value};
+}
+
+/// What a call of Embree failed at.
+[[noreturn]] void complain(RTCError error, const char* what)
+{
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(what);
 }
 
 }  // namespace
@@ -76,7 +84,12 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
 {
     impl_->isa = instruction_set_of_this_machine();
     impl_->device = rtcNewDevice(("isa=" + impl_->isa).c_str());
-    if (impl_->device == nullptr) throw std::runtime_error("Embree can't start on this machine");
+    if (impl_->device == nullptr) {
+        // Without memory for its threads it says unknown.
+        const RTCError cause = rtcGetDeviceError(nullptr);
+        if (cause == RTC_ERROR_OUT_OF_MEMORY || cause == RTC_ERROR_UNKNOWN) throw std::bad_alloc();
+        throw std::runtime_error("Embree can't start on this machine");
+    }
     impl_->scene = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
@@ -100,8 +113,8 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
     rtcAttachGeometry(impl_->scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(impl_->scene);
-    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
-        throw std::runtime_error("Embree could not build the scene");
+    if (const RTCError error = rtcGetDeviceError(impl_->device); error != RTC_ERROR_NONE)
+        complain(error, "Embree could not build the scene");
 }
 
 RayCaster::RayCaster(RayCaster&&) noexcept = default;

@@ -12,6 +12,8 @@ namespace {
 
 /// Heights below this part of the sizes that they are products of are rounding.
 constexpr double rounding = 4e-15;
+/// A smaller part of a polygon isn't seen.
+constexpr double least_visible = 1e-12;
 
 /// A size that costs no root.
 double size(const Vec3& p)
@@ -165,6 +167,8 @@ double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygo
     }
     double sum = 0;
     for (const Polygon& piece : scratch.pieces) sum += contour(piece, n);
+    // What is left of a polygon that is hidden, where rounding puts two edges of blockers beside each other.
+    if (scratch.cut && -sum < least_visible && sum >= least_visible * contour(scratch.whole, n)) return 0;
     return std::max(0.0, -sum / (2 * std::numbers::pi));
 }
 

@@ -62,9 +62,9 @@ void count(const PlaneArrangement& plane, SceneReport& report)
 }
 
 /// Whether light can escape from where it is, and where no surface sees another.
-void look_into_regions(std::vector<PlaneArrangement>& planes, const PolygonSoup& soup, LoadedScene& loaded)
+void look_into_regions(std::vector<PlaneArrangement>& planes, const PolygonSoup& soup, SpaceRegions& regions,
+                       LoadedScene& loaded)
 {
-    SpaceRegions regions = regions_of(planes, soup);
     loaded.scene.closed = is_closed(planes, soup, regions);
     loaded.report.covered_area = blacken_covered_parts(planes, soup, regions);
 }
@@ -173,9 +173,13 @@ LoadedScene build_scene(const RawScene& raw, const SceneOptions& options)
         count(planes.back(), report);
     }
     Scene& scene = loaded.scene;
-    look_into_regions(planes, soup, loaded);
-    for (std::size_t g = 0; g < groups.size(); ++g)
-        append(join_surfaces(groups[g], planes[g], soup, options.join_objects), scene);
+    SpaceRegions regions = regions_of(planes, soup);
+    look_into_regions(planes, soup, regions, loaded);
+    std::uint32_t first = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        append(join_surfaces(groups[g], planes[g], soup, regions, first, options.join_objects), scene);
+        first += static_cast<std::uint32_t>(planes[g].triangles.size());
+    }
     scene.center = soup.center;
     scene.diameter = soup.diameter;
     scene.unit = options.unit;

@@ -61,21 +61,25 @@ void for_each_edge(const std::vector<HalfEdge>& edges, Visit visit)
 /// Joins one side of an arrangement.
 class SideJoiner {
 public:
-    SideJoiner(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup, Side side,
-               bool join_objects)
-        : group_(group), arrangement_(arrangement), soup_(soup), side_(side), join_objects_(join_objects)
+    SideJoiner(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup,
+               SpaceRegions& regions, std::uint32_t first, Side side, bool join_objects)
+        : group_(group), arrangement_(arrangement), soup_(soup), regions_(regions), first_(first), side_(side),
+          join_objects_(join_objects)
     {}
     void join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result);
 
 private:
     MaterialId material(std::uint32_t triangle) const;
-    bool belong_together(std::uint32_t triangle, std::uint32_t other) const;
+    bool belong_together(std::uint32_t triangle, std::uint32_t other);
+    std::uint32_t shell(std::uint32_t triangle) { return regions_.shell(first_ + triangle, side_ == Side::front); }
     Surface make_surface(const std::vector<std::uint32_t>& triangles,
                          std::vector<std::pair<std::uint32_t, std::uint32_t>> border) const;
 
     const PlaneGroup& group_;
     const PlaneArrangement& arrangement_;
     const PolygonSoup& soup_;
+    SpaceRegions& regions_;
+    std::uint32_t first_;
     Side side_;
     bool join_objects_;
 };
@@ -86,13 +90,13 @@ MaterialId SideJoiner::material(std::uint32_t triangle) const
     return face == black ? MaterialId{} : soup_.faces[face].material;
 }
 
-bool SideJoiner::belong_together(std::uint32_t triangle, std::uint32_t other) const
+bool SideJoiner::belong_together(std::uint32_t triangle, std::uint32_t other)
 {
     const std::uint32_t face = shown(arrangement_.triangles[triangle], side_);
     const std::uint32_t next = shown(arrangement_.triangles[other], side_);
     if (face == black || next == black) return false;
     const SoupFace &a = soup_.faces[face], &b = soup_.faces[next];
-    return a.material == b.material && (join_objects_ || a.object == b.object);
+    return a.material == b.material && (join_objects_ || a.object == b.object) && shell(triangle) == shell(other);
 }
 
 Surface SideJoiner::make_surface(const std::vector<std::uint32_t>& triangles,
@@ -148,7 +152,7 @@ void SideJoiner::join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result)
 }  // namespace
 
 PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup,
-                            bool join_objects)
+                            SpaceRegions& regions, std::uint32_t first, bool join_objects)
 {
     PlaneSurfaces result;
     for (const PlaneTriangle& triangle : arrangement.triangles) {
@@ -158,7 +162,7 @@ PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arr
     }
     const std::vector<HalfEdge> edges = half_edges(arrangement);
     for (const Side side : {Side::front, Side::back})
-        SideJoiner(group, arrangement, soup, side, join_objects).join(edges, result);
+        SideJoiner(group, arrangement, soup, regions, first, side, join_objects).join(edges, result);
     return result;
 }
 

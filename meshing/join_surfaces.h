@@ -3,6 +3,7 @@
 #include "meshing/arrange_plane.h"
 #include "meshing/plane_groups.h"
 #include "meshing/polygon_soup.h"
+#include "meshing/space_regions.h"
 
 #include <array>
 #include <cstdint>
@@ -11,13 +12,14 @@
 namespace patchlight {
 
 /// The surfaces of one plane: triangles of equal material (and object, when objects don't join) on one side that hang
-/// together by edges.
+/// together by edges and face the same space: a floor that two sealed rooms share is two surfaces.
 struct PlaneSurfaces {
     std::vector<Surface> surfaces;         ///< loops index the soup's vertices
     std::vector<SceneTriangle> triangles;  ///< of the arrangement; front and back index `surfaces`
 };
 
+/// `regions` are those of all planes' triangles, of which this plane's begin with `first`.
 PlaneSurfaces join_surfaces(const PlaneGroup& group, const PlaneArrangement& arrangement, const PolygonSoup& soup,
-                            bool join_objects);
+                            SpaceRegions& regions, std::uint32_t first, bool join_objects);
 
 }  // namespace patchlight

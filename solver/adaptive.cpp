@@ -1,5 +1,6 @@
 #include "solver/adaptive.h"
 
+#include "solver/invariants.h"
 #include "solver/light_stages.h"
 #include "solver/mesh_stages.h"
 
@@ -30,6 +31,7 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
     KeptRows* const kept = options.refine == Refine::none ? observers.rows : nullptr;
     RadiositySystem system = assemble_patches(coarse, options, stages, kept);
     const PatchSolution patches = solve_patches(coarse, system, options, stages);
+    require_none(broken_invariants(system, patches.B, scene.closed, invariant_tolerances(options)), scene, uniform);
     const Lighting lighting(coarse, emitted, system, patches, options, stages, kept);
     // Of a run that is continued they are counted already.
     std::size_t rays = start ? 0 : lighting.rays();
@@ -51,6 +53,7 @@ AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& opt
             const bool last = finished(mesh, found.error, plan, cycle, options);
             Reconstruction nodes{std::move(found.vertex_B), {}, 0};
             if (last) nodes = lighting.final_nodes(exchange, std::move(nodes), options, stages);
+            require_none(broken_invariants(scene, mesh, B, nodes), scene, mesh);
             rays += found.rays + nodes.rays;
             const EnergyBalance energy = last && cycle > 0 ? lighting.energy(mesh, locator, B) : patches.energy;
             if (observers.on_step)

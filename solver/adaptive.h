@@ -65,7 +65,7 @@ struct AdaptiveSolution {
 /// adaptive mesh → … → final radiosity. Each mesh is lit by the emitters' light, found anew at its nodes, and the
 /// indirect light, which is solved once. Refine::none: the uniform mesh alone, its light gathered from its patches. The
 /// answer depends on scene and options only, not on the number of threads. Throws Interrupted when observers.stop is
-/// requested; the steps already observed are whole.
+/// requested; the steps already observed are whole. Throws InvariantError where an answer can't be right.
 AdaptiveSolution solve_adaptively(const Scene& scene, const AdaptiveOptions& options,
                                   const AdaptiveObservers& observers = {},
                                   std::optional<AdaptiveStart> start = std::nullopt);

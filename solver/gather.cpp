@@ -1,6 +1,7 @@
 #include "solver/gather.h"
 
 #include "formfactor/compressed_rows.h"
+#include "meshing/surface_shells.h"
 
 #include <algorithm>
 #include <bit>
@@ -180,6 +181,11 @@ void share(const Scene& scene, double crease_angle, std::span<const BorderNode> 
         places[{p.x, p.y, p.z, scene.surface(node.surface).material.value}].push_back(node);
     }
     const double cosine = std::cos(crease_angle * std::numbers::pi / 180);
+    std::vector<std::uint32_t> shells;  // found when first asked for: most scenes have no curved objects
+    const auto share_a_room = [&](SurfaceId a, SurfaceId b) {
+        if (shells.empty()) shells = surface_shells(scene);
+        return shells[a.value] == shells[b.value];
+    };
     for (const auto& [place, group] : places) {
         if (group.size() < 2) continue;
         std::vector<Rgb> shared;
@@ -187,8 +193,10 @@ void share(const Scene& scene, double crease_angle, std::span<const BorderNode> 
             Rgb sum(0.0);
             double count = 0;
             for (const BorderNode& w : group)
-                if ((v.index == w.index || v.surface != w.surface) &&
-                    glm::dot(scene.surface(v.surface).frame.n, scene.surface(w.surface).frame.n) >= cosine) {
+                if (v.index == w.index ||
+                    (v.surface != w.surface &&
+                     glm::dot(scene.surface(v.surface).frame.n, scene.surface(w.surface).frame.n) >= cosine &&
+                     share_a_room(v.surface, w.surface))) {
                     sum += irradiance[w.index];
                     ++count;
                 }

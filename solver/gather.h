@@ -64,8 +64,8 @@ struct ElementPoints {
 ElementPoints element_points(const Exchange& exchange);
 
 /// B = E + ρ H at every node of the elements, never averaged from neighbours, never across a surface's border; except
-/// that facets of a curved object share their irradiance at common nodes, within one material and the crease angle
-/// (degrees). The vertices' values don't depend on `elements`. Throws Interrupted.
+/// that facets of a curved object share their irradiance at common nodes, within one material, one room and the crease
+/// angle (degrees). The vertices' values don't depend on `elements`. Throws Interrupted.
 struct Reconstruction {
     VertexRadiosity B;
     MidpointRadiosity middle_B;  ///< empty: linear elements
@@ -81,7 +81,7 @@ VertexRadiosity linear_radiosity(const Exchange& exchange, std::span<const Rgb> 
 Radiosity patch_means(const PatchMesh& mesh, const VertexRadiosity& B);
 
 /// Averages irradiance over vertices at one place whose surfaces have one material and normals within the crease
-/// angle of the vertex's own; never over the copies of one surface's contact vertex.
+/// angle of the vertex's own, in one room (surface_shells()); never over copies of one surface's contact vertex.
 void share_irradiance(const Exchange& exchange, double crease_angle, std::vector<Rgb>& irradiance);
 
 }  // namespace patchlight

@@ -2,6 +2,7 @@
 #include "apps/imaging/image_file_module.h"
 
 #include <dlfcn.h>
+#include <new>
 #include <stdexcept>
 
 namespace patchlight {
@@ -17,7 +18,11 @@ const ImageFileModule& load_module()
     void* const library = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
     const void* const entry = library ? dlsym(library, entry_name) : nullptr;
     if (!entry) {
-        throw std::runtime_error(std::string("no pictures without ") + module_name + ": " + dlerror());
+        const std::string cause = dlerror();
+        // The loader's words where a library doesn't fit into what memory is allowed.
+        for (const char* words : {"failed to map segment", "annot allocate memory"})
+            if (cause.find(words) != std::string::npos) throw std::bad_alloc();
+        throw std::runtime_error(std::string("no pictures without ") + module_name + ": " + cause);
     }
     return *static_cast<const ImageFileModule*>(entry);
 }

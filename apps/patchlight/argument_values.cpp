@@ -201,4 +201,21 @@ double bytes_in(const std::string& option, const std::string& text)
     refuse(option, text, "a size such as 8G, 8GiB or 500MB");
 }
 
+double seconds_in(const std::string& option, const std::string& text)
+{
+    constexpr double longest = 1e9;
+    static const std::vector<std::pair<std::string_view, double>> units{{"min", 60}, {"h", 3600}, {"s", 1}, {"", 1}};
+    for (const auto& [unit, seconds] : units) {
+        if (!text.ends_with(unit)) {
+            continue;
+        }
+        const auto number = exactly<double>(std::string_view(text).substr(0, text.size() - unit.size()));
+        if (number && *number > 0 && *number * seconds <= longest) {
+            return *number * seconds;
+        }
+        break;
+    }
+    refuse(option, text, "a time such as 90s, 10min or 2h");
+}
+
 }  // namespace patchlight

@@ -25,6 +25,11 @@ std::pair<std::string, Rgb> emitter_in(const std::string& option, const std::str
 WhichCycle cycle_in(const std::string& option, const std::string& text);
 /// Bytes: a number and B, kB, MB, GB, TB (powers of 1000) or KiB, MiB, GiB, TiB (of 1024).
 double bytes_in(const std::string& option, const std::string& text);
+/// Of every --memory.
+inline constexpr const char* memory_help =
+    "refuse what needs more, as 8GiB or 500MB [80 % of what the machine or its control group has, at most 16GiB]";
+/// Seconds: a number alone, or with s, min or h; above 0 and at most 1e9.
+double seconds_in(const std::string& option, const std::string& text);
 double number_in(const std::string& option, const std::string& text);
 
 }  // namespace patchlight

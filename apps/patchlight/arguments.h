@@ -43,7 +43,8 @@ struct SolveCommand {
     bool quiet = false;
     bool json = false;
     bool demo = false;
-    double memory = 0;          ///< bytes; 0: 80 % of what the machine has
+    double memory = 0;          ///< bytes; 0: default_memory()
+    double time = 0;            ///< seconds; 0: no limit
     int threads = 0;            ///< 0: as many as there are
     std::string configuration;  ///< a file of options, already among these; empty: none
 };
@@ -148,7 +149,7 @@ struct FormFactorsCommand {
     std::string output;   ///< .csv or .bin; empty: the matrix isn't kept
     std::string patches;  ///< CSV that tells what the rows are; empty: none
     bool repair = false;
-    double memory = 0;  ///< bytes; 0: 80 % of what the machine has
+    double memory = 0;  ///< bytes; 0: default_memory()
     bool quiet = false;
     bool json = false;
     int threads = 0;
@@ -181,7 +182,7 @@ struct RerunCommand {
     std::string output;  ///< new folder, or one to resume
     bool quiet = false;
     bool json = false;
-    double memory = 0;  ///< bytes; 0: 80 % of what the machine has
+    double memory = 0;  ///< bytes; 0: default_memory()
     int threads = 0;    ///< 0: as many as there are
 };
 

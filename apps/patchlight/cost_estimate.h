@@ -8,7 +8,8 @@
 
 namespace patchlight {
 
-/// What a solve will roughly need. Orders of magnitude.
+/// What a solve will roughly need. Bytes are within 20 % where the rows or --vertex-rays decide them; the rest are
+/// orders of magnitude.
 struct CostEstimate {
     std::size_t elements = 0;  ///< of the largest mesh
     double rays = 0;           ///< of all cycles
@@ -19,7 +20,7 @@ struct CostEstimate {
 CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options);
 
 /// Throws LimitError, with how many elements fit and what else to do, when a solve needs more than `limit` bytes;
-/// 0: 80 % of the machine's memory.
+/// 0: default_memory().
 void check_memory(const Scene& scene, const AdaptiveOptions& options, double limit = 0);
 
 /// Triangles of the uniform mesh, roughly: those of `max_edge`, and no more than `max_elements`.
@@ -28,7 +29,7 @@ double uniform_elements(const Scene& scene, const MeshingOptions& meshing);
 /// What meshing and holding so many elements takes, without factors.
 double mesh_bytes(double elements);
 
-/// Throws LimitError ("needs … GiB, limit … GiB (…); `instead`"). `limit` in bytes; 0: 80 % of the machine's memory.
+/// Throws LimitError ("needs … GiB, limit … GiB (…); `instead`"). `limit` in bytes; 0: default_memory().
 void require_memory(double needed, double limit, const std::string& instead);
 
 }  // namespace patchlight

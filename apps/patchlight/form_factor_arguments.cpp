@@ -96,8 +96,7 @@ void add_matrix_options(CLI::App& app, FormFactorsCommand& c, FormFactorTexts& t
                        "symmetric: make the matrix reciprocal, and closed in a closed scene, and say what changed")
             ->check(CLI::IsMember({"none", "symmetric"}))
             ->capture_default_str(),
-        app.add_option("--memory", t.memory, "refuse what needs more, as 8GiB or 500MB [80 % of the machine's]")
-            ->type_name("SIZE")};
+        app.add_option("--memory", t.memory, memory_help)->type_name("SIZE")};
     for (CLI::Option* option : all) {
         t.bound.push_back({option, {}, matrix_methods});
     }

@@ -2,10 +2,12 @@
 
 #include "solver/progress.h"
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
+#include <cmath>
 #include <ctime>
 #include <pthread.h>
+#include <sys/time.h>
 #include <unistd.h>
 #include <utility>
 
@@ -32,6 +34,7 @@ Interruption::Interruption(std::function<void()> farewell) : farewell_(std::move
     sigemptyset(&signals_);
     sigaddset(&signals_, SIGINT);
     sigaddset(&signals_, SIGTERM);
+    sigaddset(&signals_, SIGALRM);
     if (!ignored(SIGHUP)) {
         sigaddset(&signals_, SIGHUP);
     }
@@ -44,6 +47,14 @@ Interruption::~Interruption()
     done_ = true;
     pthread_kill(watcher_.native_handle(), SIGTERM);
     watcher_.join();
+}
+
+void Interruption::stop_after(double seconds)
+{
+    // A timer of no time would never go off.
+    const double whole = std::floor(seconds), part = std::max(1.0, 1e6 * (seconds - whole));
+    const itimerval timer{{0, 0}, {static_cast<time_t>(whole), std::min<suseconds_t>(999'999, std::lround(part))}};
+    setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
 void Interruption::check() const
@@ -61,9 +72,15 @@ void Interruption::on_deadline(std::function<void()> last_words)
 
 void Interruption::watch()
 {
-    int signal = 0;
-    if (sigwait(&signals_, &signal) != 0 || done_) {
-        return;
+    int signal = SIGALRM;
+    while (signal == SIGALRM) {
+        if (sigwait(&signals_, &signal) != 0 || done_) {
+            return;
+        }
+        if (signal == SIGALRM) {
+            expired_ = true;
+            stop_.request_stop();
+        }
     }
     signal_ = signal;
     stop_.request_stop();

@@ -23,8 +23,13 @@ public:
     std::stop_token token() const { return stop_.get_token(); }
     /// Throws Interrupted when a signal has come.
     void check() const;
-    /// 128 + the signal.
-    int exit_code() const { return 128 + signal_; }
+    /// 128 + the signal; 5 when only the time was over.
+    int exit_code() const { return signal_ == 0 && expired_ ? 5 : 128 + signal_; }
+
+    /// Asks to stop after so many seconds, too, > 0 and at most 1e9. What is asked last holds; never ends the program
+    /// by force.
+    void stop_after(double seconds);
+    bool expired() const { return expired_ && signal_ == 0; }
 
     /// What is still to be done when the program doesn't end by itself in time; called from another thread.
     void on_deadline(std::function<void()> last_words);
@@ -38,7 +43,7 @@ private:
     std::function<void()> last_words_, farewell_;
     sigset_t signals_{};
     std::atomic<int> signal_ = 0;
-    std::atomic<bool> done_ = false;
+    std::atomic<bool> done_ = false, expired_ = false;
     std::thread watcher_;
 };
 

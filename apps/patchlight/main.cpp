@@ -3,8 +3,10 @@
 #include "apps/run/probing.h"
 #include "apps/study/study.h"
 #include "meshing/scene_error.h"
+#include "solver/invariants.h"
 #include "solver/progress.h"
 
+#include <atomic>
 #include <csignal>
 #include <exception>
 #include <new>
@@ -21,26 +23,45 @@ int run(int argc, const char* const* argv, Session& session)
     return std::visit([&](const auto& chosen) { return run_command(chosen, session); }, command);
 }
 
-/// Set once in main, for last_words() alone: a terminate handler is given nothing.
+/// Set once in main, for what is given nothing.
 FileWriter* unfinished_files = nullptr;
 
-/// Where nothing can be thrown any more: no memory even for that, or on a thread that nobody waits for. Allocates
-/// nothing; whole files stay, temporaries go.
-[[noreturn]] void last_words()
+/// Allocates nothing; whole files stay, temporaries go.
+[[noreturn]] void leave_at_once(int code, std::string_view text)
 {
-    static constexpr std::string_view memory = "error[memory]: not enough memory; ask for fewer elements or rays\n";
-    static constexpr std::string_view other = "error[internal]: ended by an error that nothing could take\n";
-    int code = 1;
-    std::string_view text = other;
-    try {
-        if (std::current_exception()) std::rethrow_exception(std::current_exception());
-    } catch (const std::bad_alloc&) {
-        code = 5;
-        text = memory;
-    } catch (...) {}
     if (unfinished_files != nullptr) unfinished_files->abandon();
     (void)!::write(STDERR_FILENO, text.data(), text.size());
     ::_exit(code);
+}
+
+constexpr std::string_view no_memory = "error[memory]: not enough memory; ask for fewer elements or rays\n";
+
+/// Where memory has run out there is no safe way back: libraries jump, assert and end threads when it is thrown through
+/// them. Files are whole or not there at any moment, so that nothing is lost by leaving from where we are.
+void out_of_memory()
+{
+    static std::atomic_flag leaving;
+    // Another thread is leaving, and may wait for what this one holds.
+    if (leaving.test_and_set()) throw std::bad_alloc();
+    leave_at_once(5, no_memory);
+}
+
+/// Where nothing can be thrown any more, or on a thread that nobody waits for.
+[[noreturn]] void last_words()
+{
+    try {
+        if (std::current_exception()) std::rethrow_exception(std::current_exception());
+    } catch (const std::bad_alloc&) {
+        leave_at_once(5, no_memory);
+    } catch (...) {}
+    leave_at_once(1, "error[internal]: ended by an error that nothing could take\n");
+}
+
+/// Before main: the objects that stand outside functions need memory too.
+[[gnu::constructor(101)]] void expect_the_worst()
+{
+    std::set_new_handler(out_of_memory);
+    std::set_terminate(last_words);
 }
 
 constexpr const char* interrupted = "interrupted; the same command goes on from the last finished cycle";
@@ -72,6 +93,9 @@ int run_and_report(int argc, const char* const* argv, Session& session)
     } catch (const LimitError& error) {
         say.error("memory", error.what());
         return 5;
+    } catch (const InvariantError& error) {
+        say.error("invariant", error.what());
+        return 4;
     } catch (const std::bad_alloc&) {
         say.error("memory", "not enough memory; ask for fewer elements or rays");
         return 5;
@@ -79,7 +103,11 @@ int run_and_report(int argc, const char* const* argv, Session& session)
         say.error("output", error.what());
         return 6;
     } catch (const Interrupted&) {
-        say.note(interrupted);
+        if (session.interruption.expired())
+            say.error("time", "--time is over; the same command goes on from the last finished cycle, with a longer "
+                              "--time or without one");
+        else
+            say.note(interrupted);
         return session.interruption.exit_code();
     } catch (const PipeClosed&) {
         return 128 + SIGPIPE;
@@ -100,7 +128,6 @@ int main(int argc, char** argv)
     patchlight::Interruption interruption([&] { messages.close(patchlight::interrupted); });
     patchlight::FileWriter writer;
     patchlight::unfinished_files = &writer;
-    std::set_terminate(patchlight::last_words);
     patchlight::Session session{messages, interruption, writer};
     return patchlight::run_and_report(argc, argv, session);
 }

@@ -9,8 +9,7 @@ void add_rerun(CLI::App& app, RerunCommand& c, std::string& memory)
 {
     app.add_option("run", c.run, "folder of a finished run")->required()->type_name("RUN");
     app.add_option("-o", c.output, "new folder, or one to resume")->required()->type_name("NEW");
-    app.add_option("--memory", memory, "refuse what needs more, as 8GiB or 500MB [80 % of the machine's]")
-        ->type_name("SIZE");
+    app.add_option("--memory", memory, memory_help)->type_name("SIZE");
     add_machine(app, c.threads, c.quiet, c.json, "print JSON instead of a summary");
     app.footer("Solves the scene that the run holds with the run's options; the scene's own file\n"
                "isn't needed. Exit code 0: every file came out the same to the byte; 7: some\n"

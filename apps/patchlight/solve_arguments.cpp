@@ -156,8 +156,11 @@ void add_solve(CLI::App& app, SolveCommand& c, SolveTexts& t)
     add_meshing(app, c, t);
     add_light(app, c, t);
     add_pictures(app, c, t);
-    app.add_option("--memory", t.memory, "refuse what needs more, as 8GiB or 500MB [80 % of the machine's]")
-        ->type_name("SIZE");
+    app.add_option("--memory", t.memory, memory_help)->type_name("SIZE");
+    app.add_option("--time", t.time,
+                   "stop after so long, as 90s, 10min or 2h, with exit code 5; the same command goes on from the last "
+                   "finished cycle [no limit]")
+        ->type_name("LIMIT");
     app.add_option("--config", c.configuration,
                    "a TOML file of these options, as max_elements = 4000; what stands here wins [none]")
         ->type_name("FILE");
@@ -204,6 +207,9 @@ void finish_solve(SolveCommand& c, const SolveTexts& t)
     }
     if (!t.memory.empty()) {
         c.memory = bytes_in("--memory", t.memory);
+    }
+    if (!t.time.empty()) {
+        c.time = seconds_in("--time", t.time);
     }
     c.pictures.pictures = t.pictures == "all";
     if (!t.size.empty()) {

@@ -12,7 +12,7 @@ struct SolveTexts {
     SceneTexts scene;
     std::string refine = "both", direct = "exact", elements = "linear", solver = "gauss-seidel", method = "hemisphere",
                 indicator = "residual", marking = "doerfler", directions = "stratified", order = "unshot-power",
-                pictures = "all", memory, size, snapshots;
+                pictures = "all", memory, time, size, snapshots;
     double max_edge = 0;
     CLI::Option* max_elements_option = nullptr;
     CLI::Option* tolerance_option = nullptr;

@@ -111,6 +111,7 @@ void open_folder(std::optional<RunFolder>& folder, const SolveCommand& command, 
 int solve_planned(const PlannedSolve& plan, const SceneInput& input, const RayCaster& caster, Session& session)
 {
     const SolveCommand& command = plan.command;
+    if (command.time > 0) session.interruption.stop_after(command.time);
     check_memory(input.scene, command.options, command.memory);
     check_factors_fit(command, input.scene, session);
     const std::vector<std::string> warnings = gather_warnings(input, caster, session);

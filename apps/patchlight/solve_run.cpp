@@ -135,7 +135,7 @@ bool SolveRun::go()
         display_.clear();
         const auto cycles = folder_.record().cycles;
         if (!cycles.empty()) {
-            folder_.write("solution.glb", read_bytes(folder_.cycle_folder(cycles.back().cycle) / "solution.glb"));
+            folder_.write("solution.glb", folder_.read_in_cycle(cycles.back().cycle, "solution.glb"));
         }
         folder_.finish(RunStatus::interrupted, false, machine());
         throw;
@@ -205,7 +205,7 @@ void SolveRun::write_results()
         write_snapshots(last);
         picture_seconds_ += seconds_since(start);
     }
-    folder_.write("solution.glb", read_bytes(folder_.cycle_folder(cycles.back().cycle) / "solution.glb"));
+    folder_.write("solution.glb", folder_.read_in_cycle(cycles.back().cycle, "solution.glb"));
 }
 
 void SolveRun::write_pictures(const StoredSolution& last)
@@ -250,7 +250,8 @@ void SolveRun::write_picture(const std::string& name, const std::vector<unsigned
 
 StoredSolution SolveRun::stored(int cycle) const
 {
-    return read_solution(folder_.cycle_folder(cycle) / "solution.glb");
+    return decode_solution(folder_.read_in_cycle(cycle, "solution.glb"),
+                           (folder_.cycle_folder(cycle) / "solution.glb").string());
 }
 
 bool SolveRun::converged() const

@@ -1,5 +1,6 @@
 #include "apps/python/given_values.h"
 
+#include "apps/run/memory_limit.h"
 #include "formfactor/form_factor_matrix.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <unistd.h>
 #include <vector>
 
 namespace patchlight {
@@ -88,8 +88,7 @@ void check_memory(const Exchange& exchange, const AdaptiveOptions& options)
     if (options.final.solver == Solver::hierarchical) return;
     constexpr double gib = 1024.0 * 1024 * 1024;
     const double needed = matrix_bytes(options.form_factors.method, exchange.mesh.patch_count(), options.form_factors);
-    const double limit =
-        0.8 * static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+    const double limit = default_memory();
     if (needed <= limit) return;
     const std::string text = fmt::format("the rows of {} patches need {:.1f} GiB, limit {:.1f} GiB; use solver "
                                          "\"hierarchical\"",

@@ -21,7 +21,7 @@ void check_mesh(const Scene& scene, const PatchMesh& mesh);
 void check_estimate(const PatchMesh& mesh, const ErrorEstimate& error);
 /// The equations of the exchange's patches.
 void check_system(const Exchange& exchange, const RadiositySystem& system);
-/// Rows that would take more than 80 % of the machine's memory are Python's MemoryError, with what to do instead.
+/// Rows that would take more than default_memory() are Python's MemoryError, with what to do instead.
 void check_memory(const Exchange& exchange, const AdaptiveOptions& options);
 
 }  // namespace patchlight

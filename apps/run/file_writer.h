@@ -37,14 +37,15 @@ public:
     /// The same for the folder that a file is to stand in.
     static void make_folder_of(const std::filesystem::path& file);
 
-    /// Unlinks what is unfinished. For the way out after an interrupt: nothing can be written afterwards.
+    /// Unlinks what is unfinished. For the way out after an interrupt or without memory: nothing can be written
+    /// afterwards. Allocates nothing, and may be called where another call of this thread's ran out of memory.
     void abandon() noexcept;
 
     /// Deletes temporaries that a killed program left in a folder.
     static void sweep(const std::filesystem::path& folder) noexcept;
 
 private:
-    std::mutex mutex_;
+    std::recursive_mutex mutex_;
     std::set<std::string> unfinished_;
     bool abandoned_ = false;
 };

@@ -6,12 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fcntl.h>
-#include <sys/file.h>
 #include <system_error>
-#include <thread>
-#include <unistd.h>
 
 namespace patchlight {
 
@@ -46,29 +41,6 @@ const std::filesystem::path& made(const std::filesystem::path& folder)
 }
 
 }  // namespace
-
-FolderLock::FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
-{
-    if (descriptor_ < 0) {
-        throw OutputError(fmt::format("{}: {}", folder.string(), std::generic_category().message(errno)));
-    }
-    // Not every file system can lock; then two programs at once are the user's own affair.
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        if (std::chrono::steady_clock::now() < deadline) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-            continue;
-        }
-        ::close(descriptor_);
-        throw FolderRefused(fmt::format("{} is being written by another patchlight", folder.string()));
-    }
-}
-
-FolderLock::~FolderLock()
-{
-    ::close(descriptor_);
-}
 
 RunFolder::RunFolder(std::filesystem::path folder, RunIdentity identity, FileWriter& writer,
                      const std::vector<std::string>& also_ours)
@@ -161,9 +133,16 @@ std::string cycle_folder(int cycle)
     return fmt::format("cycles/{:02}", cycle);
 }
 
+/// Into this folder and no other that stands in its place by now.
+void RunFolder::put(const std::string& name, std::string_view bytes)
+{
+    lock_.check(folder_);
+    writer_.write(folder_ / name, bytes);
+}
+
 void RunFolder::write(const std::string& name, std::string_view bytes)
 {
-    writer_.write(folder_ / name, bytes);
+    put(name, bytes);
     const std::string digest = sha256_hex(bytes);
     const std::lock_guard lock(mutex_);
     record_.files[name] = digest;
@@ -171,8 +150,26 @@ void RunFolder::write(const std::string& name, std::string_view bytes)
 
 void RunFolder::write_in_cycle(int cycle, const std::string& name, std::string_view bytes)
 {
+    lock_.check(folder_);
     FileWriter::make_folder(cycle_folder(cycle));
     write(patchlight::cycle_folder(cycle) + '/' + name, bytes);
+}
+
+std::string RunFolder::read_in_cycle(int cycle, const std::string& name) const
+{
+    const std::string file = patchlight::cycle_folder(cycle) + '/' + name;
+    std::string bytes;
+    try {
+        bytes = read_bytes(folder_ / file);
+    } catch (const std::runtime_error& gone) {
+        throw OutputError(fmt::format("{}; this run wrote it", gone.what()));
+    }
+    const std::lock_guard lock(mutex_);
+    const auto written = record_.files.find(file);
+    if (written == record_.files.end() || written->second != sha256_hex(bytes)) {
+        throw OutputError(fmt::format("{}: was changed while the run was going on", (folder_ / file).string()));
+    }
+    return bytes;
 }
 
 void RunFolder::finish_cycle(const CycleRecord& record, const Json& seconds)
@@ -191,7 +188,7 @@ void RunFolder::finish_cycle(const CycleRecord& record, const Json& seconds)
     }
     kept.push_back(seconds);
     timing_["cycles"] = kept;
-    writer_.write(folder_ / "timing.json", text_of(timing_));
+    put("timing.json", text_of(timing_));
 }
 
 void RunFolder::set_warnings(std::vector<std::string> warnings)
@@ -217,7 +214,7 @@ void RunFolder::finish(RunStatus status, bool converged, const Json& machine)
         });
     }
     timing_.update(machine);
-    writer_.write(folder_ / "timing.json", text_of(timing_));
+    put("timing.json", text_of(timing_));
     write_record();
     if (status == RunStatus::finished || status == RunStatus::not_converged) {
         state_ = FolderState::finished;
@@ -245,7 +242,7 @@ void RunFolder::write_record()
     if (interrupted_ && shown.status == RunStatus::running) {
         shown.status = RunStatus::interrupted;
     }
-    writer_.write(folder_ / "run.json", text_of(json_of(shown)));
+    put("run.json", text_of(json_of(shown)));
 }
 
 }  // namespace patchlight

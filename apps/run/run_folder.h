@@ -1,10 +1,10 @@
 #pragma once
 
 #include "apps/run/file_writer.h"
+#include "apps/run/folder_lock.h"
 #include "apps/run/run_record.h"
 #include "apps/run/stored_solution.h"
 
-#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -16,20 +16,6 @@ namespace patchlight {
 class FolderRefused : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
-};
-
-/// Keeps other programs out of a folder while it lives. Leaves no file behind.
-class FolderLock {
-public:
-    /// Throws FolderRefused when another program holds it and doesn't let go in time, OutputError when the folder can't
-    /// be opened.
-    explicit FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience = {});
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-    ~FolderLock();
-
-private:
-    int descriptor_ = -1;
 };
 
 /// Where the files of a cycle are in the folder of its run.
@@ -58,9 +44,12 @@ public:
     /// Where a cycle's files are.
     std::filesystem::path cycle_folder(int cycle) const { return folder_ / patchlight::cycle_folder(cycle); }
 
-    /// Writes a file of the run, whose digest run.json will name. Throws OutputError.
+    /// Writes a file of the run, whose digest run.json will name. Throws OutputError, also when the folder has gone.
     void write(const std::string& name, std::string_view bytes);
     void write_in_cycle(int cycle, const std::string& name, std::string_view bytes);
+
+    /// What was written there. Throws OutputError when it isn't there any more, or is something else.
+    std::string read_in_cycle(int cycle, const std::string& name) const;
 
     /// The last step of a cycle: its record, run.json and timing.json. Until then the cycle isn't there.
     void finish_cycle(const CycleRecord& record, const Json& seconds);
@@ -76,6 +65,7 @@ public:
 private:
     void take(const RunIdentity& identity, const std::vector<std::string>& also_ours);
     void keep_whole_cycles();
+    void put(const std::string& name, std::string_view bytes);
     void write_record();
 
     std::filesystem::path folder_;

@@ -65,6 +65,8 @@ INSTANTIATE_TEST_SUITE_P(
                       solving({"--emitter", "lamp=nan"}), solving({"--emitter", "lamp=1", "--emitter", "lamp=2"}),
                       solving({"--unit", "parsec"}), solving({"--max-reflectance", "1"}), solving({"--seed", "-1"}),
                       solving({"--memory", "8"}), solving({"--memory", "-1GB"}), solving({"--memory", "0MiB"}),
+                      solving({"--time", "0"}), solving({"--time", "-5s"}), solving({"--time", "soon"}),
+                      solving({"--time", "1e10"}), solving({"--time", "nan"}), solving({"--time", "5d"}),
                       solving({"--crease-angle", "181"}), solving({"--marking", "all"}), solving({"--direct", "none"}),
                       solving({"--direct", "exactly"}), solving({"--refine", "lines"}), solving({"--refine", ""}),
                       std::vector<std::string>{"render", "run", "-o", "a.jpg"},
@@ -249,6 +251,11 @@ TEST(Arguments, SolversAndMemoryArrive)
     EXPECT_EQ(command({"--memory", "4G"}).memory, 0x1p32);
     EXPECT_EQ(command({"--memory", "512MiB"}).memory, 0x1p29);
     EXPECT_EQ(command({"--memory", "1.5GB"}).memory, 1.5e9);
+    EXPECT_EQ(command({}).time, 0) << "no limit";
+    EXPECT_EQ(command({"--time", "90"}).time, 90);
+    EXPECT_EQ(command({"--time", "0.5s"}).time, 0.5);
+    EXPECT_EQ(command({"--time", "10min"}).time, 600);
+    EXPECT_EQ(command({"--time", "2h"}).time, 7200);
 }
 
 TEST(Arguments, FormFactorsBetweenObjectsAndOfAllPatchesHaveTheirOwnDefaults)

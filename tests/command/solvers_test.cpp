@@ -163,7 +163,7 @@ TEST_F(MemoryTest, WhatNeedsMoreIsRefusedWithWhatFits)
 TEST_F(MemoryTest, WhatIsSaidToFitFits)
 {
     const auto solve = [&](const std::string& elements) {
-        return run({"solve", box, "--unit", "mm", "-o", path("run"), "--form-factors", "exact", "--memory", "20MB",
+        return run({"solve", box, "--unit", "mm", "-o", path("run"), "--form-factors", "exact", "--memory", "40MB",
                     "--refine", "none", "--pictures", "none", "--max-elements", elements});
     };
     const std::string message = solve("100000").err;

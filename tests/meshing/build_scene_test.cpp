@@ -250,6 +250,23 @@ TEST(BuildScene, squares_that_meet_at_corners_only_are_surfaces_of_their_own)
     EXPECT_EQ(loaded.scene.surfaces.size(), 17U);
 }
 
+// A patch that reached under the wall would carry light through it.
+TEST(BuildScene, a_floor_that_two_sealed_rooms_share_is_two_surfaces)
+{
+    const auto one = box({0, 0, 0}, {1, 1, 1}, true, "red"), other = box({1, 0, 0}, {1, 1, 1}, true, "red");
+    const Polygon lamp = rectangle({.4, .4, .8}, {0, .2, 0}, {.2, 0, 0}, "lamp");
+    for (const Placement& place : {Placement{}, Placement{rotated}}) {
+        const LoadedScene rooms = load(with(with(one, other), lamp), {}, place);
+        expect_sound(rooms);
+        EXPECT_EQ(count_of(rooms.scene, "red"), 12U);
+        // A wall with a gap beside it seals nothing: the floor stays one surface.
+        const Polygon screen = rectangle({1, 0, 0}, {0, .9, 0}, {0, 0, 1}, "red");
+        const LoadedScene hall = load(with(with(box({0, 0, 0}, {2, 1, 1}, true, "red"), screen), lamp), {}, place);
+        expect_sound(hall);
+        EXPECT_EQ(count_of(hall.scene, "red"), 7U);
+    }
+}
+
 TEST(BuildScene, holes_that_touch_the_border_in_a_vertex_are_loops_of_their_own)
 {
     // A frame of 8 squares round a hole, and a diamond cut whose corner touches the outer edge.

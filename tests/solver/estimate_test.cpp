@@ -189,5 +189,23 @@ TEST(Crease, FacetsOfACurvedObjectShareIrradianceAtCommonCorners)
         EXPECT_EQ(shared[v.value].r, mesh.position(v).x == 0 ? 2.0 : H[v.value].r) << v.value;
 }
 
+// Two floors that meet in one point, coplanar and of one material, are in different rooms.
+TEST(Crease, SurfacesThatMeetInAPointShareNothing)
+{
+    Scene scene;
+    scene.objects = {"o"};
+    scene.materials = {{.name = "grey", .reflectance = Rgb(0.5)}};
+    testing::add_surface(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 0);
+    testing::add_surface(scene, {{1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}}, 0);
+    const PatchMesh mesh = triangulate(scene, {.max_edge = 10});
+    const RayCaster caster(scene);
+    const PatchLocator locator(mesh);
+    std::vector<Rgb> H(mesh.vertex_count());
+    for (const VertexId v : mesh.vertices()) H[v.value] = Rgb(mesh.surface(v).value == 0 ? 1.0 : 0.0);
+    auto shared = H;
+    share_irradiance({scene, caster, mesh, locator}, 30, shared);
+    EXPECT_EQ(shared, H);
+}
+
 }  // namespace
 }  // namespace patchlight
