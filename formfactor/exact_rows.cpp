@@ -5,6 +5,7 @@
 #include "formfactor/partial_exchange.h"
 #include "formfactor/patch_tree.h"
 #include "formfactor/unoccluded_exchange.h"
+#include "meshing/positive_part.h"
 
 #include <algorithm>
 #include <cmath>
@@ -194,7 +195,7 @@ private:
         const double apart = glm::length(patches_.centroid[i] - patches_.centroid[j]);
         const bool far = whole && apart > 2.7 * (patches_.radius[i] + patches_.radius[j]);
         const auto unoccluded = [&] {
-            return far ? std::max(0.0, kernel) * patches_.area[i] * patches_.area[j]
+            return far ? positive_part(kernel) * patches_.area[i] * patches_.area[j]
                        : unoccluded_exchange(front_a, n, front_b, m);
         };
         if (between.empty()) return unoccluded();
@@ -288,7 +289,7 @@ FormFactorMatrix exact_rows(const Scene& scene, const RayCaster& caster, const P
         for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k) F.raw_sum[PatchId(i)] += F.factors[k];
     if (scene.closed && occluded) add_backs(scene, caster, mesh, blockers, look_for_backs, options.seed, F, monitor);
     if (!scene.closed)
-        for (const PatchId p : mesh.patches()) F.escaped[p] = std::max(0.0, 1 - F.raw_sum[p]);
+        for (const PatchId p : mesh.patches()) F.escaped[p] = positive_part(1 - F.raw_sum[p]);
     if (counts != nullptr) *counts = sum;
     return F;
 }

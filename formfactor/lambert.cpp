@@ -1,5 +1,7 @@
 #include "formfactor/lambert.h"
 
+#include "meshing/positive_part.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +48,7 @@ double lambert_factor(const Vec3& p, const Vec3& n, std::span<const Vec3> polygo
     if (!any) return 0;
     sum += edge_term(last, first, n);
     // Seen from the point a polygon that faces it runs clockwise.
-    return std::max(0.0, -sum / (2 * std::numbers::pi));
+    return positive_part(-sum / (2 * std::numbers::pi));
 }
 
 }  // namespace patchlight

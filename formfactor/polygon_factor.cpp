@@ -3,6 +3,7 @@
 #include "formfactor/convex_polygon.h"
 #include "formfactor/edge_pair.h"
 #include "formfactor/lambert.h"
+#include "meshing/positive_part.h"
 
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -273,7 +274,7 @@ double fragment_exchange(std::span<const Vec3> first, const Vec3& normal_first, 
     const Place place(first, second);
     if (!(place.unit > 0)) return 0;
     const Side a(first, first[0], place.unit, normal_first), b(second, first[0], place.unit, normal_second);
-    return std::max(0.0, scaled_exchange(a, b, place.snap, tolerance)) * place.unit * place.unit;
+    return positive_part(scaled_exchange(a, b, place.snap, tolerance)) * place.unit * place.unit;
 }
 
 double polygon_factor(std::span<const Vec3> from, std::span<const Vec3> to, double tolerance)

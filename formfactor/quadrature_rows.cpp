@@ -3,6 +3,7 @@
 #include "formfactor/black_backs.h"
 #include "formfactor/compressed_rows.h"
 #include "formfactor/subdivided_exchange.h"
+#include "meshing/positive_part.h"
 
 #include <algorithm>
 #include <array>
@@ -105,7 +106,7 @@ FormFactorMatrix mirrored(const PatchMesh& mesh, const std::vector<HalfRow>& hal
                 row.factors.push_back(half->exchanges[k] / mesh.area(PatchId(i)));
                 row.raw_sum += row.factors.back();
             }
-        if (!closed) row.escaped = std::max(0.0, 1 - row.raw_sum);
+        if (!closed) row.escaped = positive_part(1 - row.raw_sum);
         rows.put(PatchId(i), row);
     }
     return rows.matrix(nodes);

@@ -1,5 +1,7 @@
 #include "formfactor/audit.h"
 
+#include "meshing/positive_part.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -114,7 +116,7 @@ Balance balance_of(const FormFactorMatrix& matrix, const FormFactorMatrix& G, co
         const PatchId patch(i);
         const double share = 1 - (matrix.backs.empty() ? 0 : matrix.backs[patch]);
         const double escaped = closed                   ? 0
-                               : matrix.escaped.empty() ? std::max(0.0, share - sum_of_row(matrix, i))
+                               : matrix.escaped.empty() ? positive_part(share - sum_of_row(matrix, i))
                                                         : matrix.escaped[patch];
         balance.escaped[i] = areas[patch] * escaped;
         // A row that sees nothing but backs keeps what little it has, and its backs make room for it.
@@ -199,7 +201,7 @@ RepairReport repair_symmetrically(FormFactorMatrix& matrix, const PatchField<dou
         const PatchId patch(i);
         matrix.escaped[patch] = d[i] * balance.escaped[i] / areas[patch];
         if (!matrix.backs.empty() && !(1 - matrix.backs[patch] > least_share))
-            matrix.backs[patch] = std::max(0.0, 1 - sum_of_row(matrix, i) - matrix.escaped[patch]);
+            matrix.backs[patch] = positive_part(1 - sum_of_row(matrix, i) - matrix.escaped[patch]);
     }
     const FormFactorAudit after = audit(matrix, areas, closed);
     report.closure_after = after.closure;

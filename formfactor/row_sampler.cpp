@@ -1,5 +1,7 @@
 #include "formfactor/row_sampler.h"
 
+#include "meshing/positive_part.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -146,7 +148,7 @@ void RowSampler::swap_small_sources(SurfaceId own, std::uint64_t key, RowScratch
         }
     }
     const double rest = row_sum - hits;
-    const float keep = rest > 0 ? static_cast<float>(std::max(0.0, row_sum - swapped) / rest) : 1.0F;
+    const float keep = rest > 0 ? static_cast<float>(positive_part(row_sum - swapped) / rest) : 1.0F;
     for (std::size_t i = 0; i < others; ++i) {
         const std::uint32_t p = scratch.touched[i];
         if (scratch.is_swapped[mesh_.surface(PatchId(p)).value] == 0) scratch.weight[p] *= keep;

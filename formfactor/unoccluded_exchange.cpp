@@ -3,6 +3,7 @@
 #include "formfactor/lambert.h"
 #include "formfactor/polygon_factor.h"
 #include "formfactor/triangle_rules.h"
+#include "meshing/positive_part.h"
 
 #include <algorithm>
 #include <cmath>
@@ -123,7 +124,7 @@ double unoccluded_exchange(std::span<const Vec3> first, const Vec3& normal_first
         }
         sum += p.weight * seen;
     }
-    return std::max(0.0, sum / std::numbers::pi);
+    return positive_part(sum / std::numbers::pi);
 }
 
 }  // namespace patchlight

@@ -1,5 +1,7 @@
 #include "formfactor/visible_part.h"
 
+#include "meshing/positive_part.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -169,7 +171,7 @@ double visible_factor(const Vec3& x, const Vec3& n, std::span<const Vec3> polygo
     for (const Polygon& piece : scratch.pieces) sum += contour(piece, n);
     // What is left of a polygon that is hidden, where rounding puts two edges of blockers beside each other.
     if (scratch.cut && -sum < least_visible && sum >= least_visible * contour(scratch.whole, n)) return 0;
-    return std::max(0.0, -sum / (2 * std::numbers::pi));
+    return positive_part(-sum / (2 * std::numbers::pi));
 }
 
 namespace {

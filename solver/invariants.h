@@ -15,7 +15,8 @@ struct InvariantTolerances {
     double row_sum = 1e-4;  ///< |Σ_j F_ij + backs + escaped − 1| of any row; single precision and swapped sources
     double closure = 1e-3;  ///< of all light in a closed scene, what escapes
     double reciprocity = std::numeric_limits<double>::infinity();  ///< as ReciprocityDefect; not promised: infinite
-    double energy = 0.5;  ///< of all light that is exchanged, what is made or lost: where rows are sampled, their noise
+    double energy = 0.02;  ///< of all light that is exchanged, what is made or lost, beside the noise of sampled rows
+    double rays = 0;       ///< of each row, independent and spread over its patch; 0: the rows have no noise
 };
 
 /// Those of the method that options.form_factors names.
@@ -32,9 +33,11 @@ struct BrokenInvariant {
 /// What must hold of rows and of light on them, whatever the scene: areas, E and factors finite, E ≥ 0, 0 ≤ F ≤ 1, rows
 /// that sum to 1 with backs and what escapes, no light that escapes from a closed scene, reciprocity where it is
 /// promised, B finite, B ≥ E, and no light made or lost in the exchange: with X = B, or B − E where direct light is
-/// exact, |Σ A X − Σ A (F X) − Σ A X (backs + escaped)| ≤ energy · Σ A X. The exact direct light is not in it: what it
-/// misses between the points of a patch is the mesh's error. A system without rows is looked at as far as it goes.
-/// Nothing is changed. Empty: all holds.
+/// exact, |Σ A X − Σ A (F X) − Σ A X (backs + escaped)| ≤ energy · Σ A X + noise. Rows of n rays carry noise of
+/// variance v ≤ 2 (max A / n) Σ A X² in steps of b = max A max X / n: by Bernstein's inequality more than √(2 t v) + t
+/// b / 3 comes once in e^t / 2, t = 21. The exact direct light is not in it: what it misses between the points of a
+/// patch is the mesh's error. A system without rows is looked at as far as it goes. Nothing is changed. Empty: all
+/// holds.
 std::vector<BrokenInvariant> broken_invariants(const RadiositySystem& system, const Radiosity& B, bool closed,
                                                const InvariantTolerances& tolerances);
 

@@ -30,11 +30,9 @@ void ReflectedSystem::apply(const Radiosity& p, Radiosity& q) const
 
 double ReflectedSystem::bound(const Radiosity& r, const Radiosity& B) const
 {
-    Rgb left(0.0), total(0.0);
-    for (std::size_t i = 0; i < r.size(); ++i) {
-        left += system_.area[PatchId(i)] * glm::abs(r[PatchId(i)]);
-        total += system_.area[PatchId(i)] * B[PatchId(i)];
-    }
+    const Rgb total = total_power(B);
+    Rgb left(0.0);
+    for (std::size_t i = 0; i < r.size(); ++i) left += system_.area[PatchId(i)] * glm::abs(r[PatchId(i)]);
     double worst = 0;
     for (int band = 0; band < 3; ++band) {
         if (left[band] == 0) continue;
@@ -52,9 +50,23 @@ void ReflectedSystem::settle_black(Radiosity& B) const
             if (system_.rho[PatchId(i)][band] == 0) B[PatchId(i)][band] = system_.E[PatchId(i)][band];
 }
 
-void ReflectedSystem::raise_to_emission(Radiosity& B) const
+void ReflectedSystem::raise_to_emission(double bound, Radiosity& B) const
 {
-    for (std::size_t i = 0; i < B.size(); ++i) B[PatchId(i)] = glm::max(B[PatchId(i)], system_.E[PatchId(i)]);
+    const Rgb most = bound * total_power(B);
+    for (std::size_t i = 0; i < B.size(); ++i) {
+        const PatchId p(i);
+        for (int band = 0; band < 3; ++band) {
+            const double missing = system_.E[p][band] - B[p][band];
+            if (missing > 0 && system_.area[p] * missing <= most[band]) B[p][band] = system_.E[p][band];
+        }
+    }
+}
+
+Rgb ReflectedSystem::total_power(const Radiosity& B) const
+{
+    Rgb total(0.0);
+    for (std::size_t i = 0; i < B.size(); ++i) total += system_.area[PatchId(i)] * B[PatchId(i)];
+    return total;
 }
 
 void ReflectedSystem::record(double residual, SolveReport& report, const SolveOptions& options,

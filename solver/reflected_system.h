@@ -22,13 +22,17 @@ public:
     /// B = E where nothing is reflected.
     void settle_black(Radiosity& B) const;
 
-    /// Light below E, which an iteration may leave, is raised to E: that brings it nearer to the answer.
-    void raise_to_emission(Radiosity& B) const;
+    /// Light below E by no more than a bound() accounts for (A_i (E − B)_i ≤ bound · Σ A B), which an iteration may
+    /// leave, is raised to E: that brings it nearer to the answer. What is lower stays, to be found.
+    void raise_to_emission(double bound, Radiosity& B) const;
 
     /// Adds the residual to a report: its end, its history, whether it is good enough; and tells the monitor.
     void record(double residual, SolveReport& report, const SolveOptions& options, const WorkMonitor& monitor) const;
 
 private:
+    /// Σ A B.
+    Rgb total_power(const Radiosity& B) const;
+
     const RadiositySystem& system_;
     const LightOperator& F_;
     Rgb rho_max_{0.0};

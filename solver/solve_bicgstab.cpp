@@ -76,7 +76,7 @@ SolveReport solve_bicgstab(const RadiositySystem& system, const LightOperator& F
         }
         reflected.record(bound, report, options, monitor);
     }
-    reflected.raise_to_emission(B);
+    reflected.raise_to_emission(report.residual, B);
     return report;
 }
 

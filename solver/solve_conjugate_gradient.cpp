@@ -40,7 +40,7 @@ SolveReport solve_conjugate_gradient(const RadiositySystem& system, const LightO
         ++report.iterations;
         reflected.record(reflected.bound(r, B), report, options, monitor);
     }
-    reflected.raise_to_emission(B);
+    reflected.raise_to_emission(report.residual, B);
     return report;
 }
 
