@@ -101,10 +101,9 @@ TEST(Contacts, an_upper_blocks_bottom_sees_the_floor_through_the_lower_block)
     expect_sound(loaded);
     EXPECT_NEAR(loaded.report.covered_area, 1, relative(1)) << "the lower block's top";
     EXPECT_NEAR(total_area(loaded.scene, "white"), 16, relative(16));
-    const auto lines = lines_on(loaded.scene, "white");
-    EXPECT_EQ(lines.size(), 4U) << "so the floor goes on inside, and light jumps at the foot";
-    EXPECT_TRUE(has_line(lines, {1, 1, 0}, {3, 1, 0}));
-    EXPECT_EQ(loaded.scene.contact_lines.size(), 4U);
+    EXPECT_EQ(count_of(loaded.scene, "white"), 2U) << "so the floor goes on inside, as a surface of its own";
+    EXPECT_NEAR(largest(loaded.scene, "white").area, 16 - 4, relative(16));
+    EXPECT_TRUE(loaded.scene.contact_lines.empty()) << "the foot is a border";
 }
 
 TEST(Contacts, a_sunk_block_covers_as_a_standing_one_does)
@@ -119,17 +118,12 @@ TEST(Contacts, a_sunk_block_covers_as_a_standing_one_does)
         EXPECT_NEAR(loaded.report.covered_area, 2, relative(2));
         EXPECT_NEAR(total_area(loaded.scene, "white"), 16 - 2 + 15 + 48, relative(77));
         EXPECT_NEAR(total_area(loaded.scene, "red"), 10, relative(10));
-        EXPECT_EQ(count_of(loaded.scene, "red"), 6U) << "a side is one surface, above and below the floor";
-        EXPECT_EQ(lines_on(loaded.scene, "white").size(), 0U) << "the floor ends there";
-        const auto lines = lines_on(loaded.scene, "red");
-        EXPECT_EQ(lines.size(), 4U) << "the floor comes up to each side";
-        if (turn) continue;
-        EXPECT_TRUE(has_line(lines, {1, 1, 0}, {3, 1, 0}));
-        EXPECT_TRUE(has_line(lines, {3, 1, 0}, {3, 2, 0}));
+        EXPECT_EQ(count_of(loaded.scene, "red"), 10U) << "each side is in the room above the floor, outside below it";
+        EXPECT_TRUE(loaded.scene.contact_lines.empty()) << "the floor ends there, and each side";
     }
 }
 
-TEST(Contacts, blocks_through_each_other_have_lines_on_the_six_faces_that_meet)
+TEST(Contacts, blocks_through_each_other_divide_the_six_faces_that_meet)
 {
     const LoadedScene loaded =
         load(with(with({lamp_above}, red_box({0, 0, 0}, {2, 2, 2})), red_box({1, 1, 1}, {2, 2, 2})));
@@ -138,10 +132,8 @@ TEST(Contacts, blocks_through_each_other_have_lines_on_the_six_faces_that_meet)
     EXPECT_EQ(loaded.report.crossing_faces, 6U);
     EXPECT_NEAR(total_area(loaded.scene, "red"), 48, relative(48));
     EXPECT_EQ(loaded.report.covered_area, 0) << "three planes show inside either block";
-    const auto lines = lines_on(loaded.scene, "red");
-    EXPECT_EQ(lines.size(), 12U);
-    for (const auto& [a, b] : {std::pair{Vec3{2, 1, 1}, Vec3{2, 1, 2}}, {{2, 1, 1}, {2, 2, 1}}, {{1, 2, 1}, {2, 2, 1}}})
-        EXPECT_TRUE(has_line(lines, a, b));
+    EXPECT_EQ(count_of(loaded.scene, "red"), 6U + 2 * 6U) << "a piece of each face is inside the other block";
+    EXPECT_TRUE(loaded.scene.contact_lines.empty()) << "they end at one another";
 }
 
 TEST(Contacts, a_block_in_a_rooms_corner_covers_nothing_as_walls_and_floor_see_one_another)
@@ -152,11 +144,8 @@ TEST(Contacts, a_block_in_a_rooms_corner_covers_nothing_as_walls_and_floor_see_o
         EXPECT_TRUE(loaded.scene.closed);
         EXPECT_EQ(loaded.report.covered_area, 0);
         EXPECT_NEAR(total_area(loaded.scene, "white"), 79, relative(79));
-        const auto lines = lines_on(loaded.scene, "white");
-        EXPECT_EQ(lines.size(), 6U);
-        EXPECT_TRUE(has_line(lines, {1, 0, 0}, {1, 1, 0}));
-        EXPECT_TRUE(has_line(lines, {0, 0, 1}, {0, 1, 1}));
-        EXPECT_EQ(loaded.scene.contact_lines.size(), 6U);
+        EXPECT_EQ(count_of(loaded.scene, "white"), 6U + 3U) << "what is inside the block is of its own";
+        EXPECT_TRUE(loaded.scene.contact_lines.empty());
     }
 }
 
@@ -273,7 +262,8 @@ TEST(Contacts, a_lamp_inside_a_box_without_bottom_uncovers_the_floor)
     expect_sound(loaded);
     EXPECT_EQ(loaded.report.covered_area, 0);
     EXPECT_NEAR(total_area(loaded.scene, "white"), 16, relative(16));
-    EXPECT_EQ(lines_on(loaded.scene, "white").size(), 4U);
+    EXPECT_EQ(count_of(loaded.scene, "white"), 2U) << "the floor of the box, and around it";
+    EXPECT_TRUE(loaded.scene.contact_lines.empty());
     EXPECT_NEAR(load(lit_floor(boxed)).report.covered_area, 2, relative(2));
 }
 
@@ -304,7 +294,7 @@ TEST(Contacts, the_order_of_faces_and_of_their_corners_does_not_matter)
     const LoadedScene straight = load(polygons, {}, rotated);
     expect_sound(straight);
     expect_nothing_pierced(straight);
-    EXPECT_GT(straight.scene.contact_lines.size(), 10U);
+    EXPECT_GT(straight.scene.contact_lines.size(), 5U);
     EXPECT_GT(straight.report.covered_area, 0.2);
     std::mt19937 random(7);
     for (int round = 0; round < 5; ++round) {

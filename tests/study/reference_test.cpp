@@ -39,7 +39,10 @@ void expect_same(const std::vector<ReferencePoint>& a, const std::vector<Referen
 TEST(PathTracedReference, GoesOnFromItsBlocksToTheSameValues)
 {
     const Scene scene = scene_of("cornell-box.obj");
-    const auto points = reference_points(scene, {.kind = ReferenceKind::path_traced, .points = 300, .options = {}, .file = {}, .place = {}}, 1);
+    const auto points = reference_points(
+        scene,
+        {.kind = ReferenceKind::path_traced, .points = 300, .seen_from = {}, .options = {}, .file = {}, .place = {}},
+        1);
     const TemporaryFolder whole, stopped;
     const auto expected = traced(scene, points, whole);
     std::stop_source stop;
@@ -62,7 +65,10 @@ TEST(PathTracedReference, GoesOnFromItsBlocksToTheSameValues)
 TEST(PathTracedReference, TracesABrokenBlockAgain)
 {
     const Scene scene = scene_of("cornell-box.obj");
-    const auto points = reference_points(scene, {.kind = ReferenceKind::path_traced, .points = 100, .options = {}, .file = {}, .place = {}}, 1);
+    const auto points = reference_points(
+        scene,
+        {.kind = ReferenceKind::path_traced, .points = 100, .seen_from = {}, .options = {}, .file = {}, .place = {}},
+        1);
     const TemporaryFolder folder;
     const auto expected = traced(scene, points, folder);
     (void)folder.write("blocks/00001.json", "[[1,2");
@@ -72,7 +78,9 @@ TEST(PathTracedReference, TracesABrokenBlockAgain)
 TEST(Reference, IsReadAsItWasWritten)
 {
     const Scene scene = scene_of("cornell-box.obj");
-    const auto points = reference_points(scene, {.kind = ReferenceKind::path_traced, .points = 70, .options = {}, .file = {}, .place = {}}, 1);
+    const auto points = reference_points(
+        scene,
+        {.kind = ReferenceKind::path_traced, .points = 70, .seen_from = {}, .options = {}, .file = {}, .place = {}}, 1);
     const TemporaryFolder folder;
     const auto found = traced(scene, points, folder);
     EXPECT_FALSE(read_reference(folder.path()));
