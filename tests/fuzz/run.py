@@ -22,6 +22,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 BUILD = SOURCE / "build-fuzz"
 CORPUS = SOURCE / "tests" / "fuzz" / "corpus"
+WORDS = SOURCE / "tests" / "fuzz" / "words"
 FOUND = BUILD / "found"
 
 
@@ -53,6 +54,8 @@ def fuzz(name, program, options):
                            UBSAN_OPTIONS="print_stacktrace=1")
         command = [program, kept, CORPUS / name, f"-max_total_time={options.seconds}", f"-seed={options.seed}",
                    "-rss_limit_mb=2048", "-timeout=10", "-print_final_stats=1", f"-artifact_prefix={FOUND / name}-"]
+        if (WORDS / name).exists():
+            command.append(f"-dict={WORDS / name}")
         done = subprocess.run(list(map(str, command)), env=environment, stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, errors="replace")
         inputs = sum(1 for _ in kept.iterdir())
