@@ -22,7 +22,8 @@ std::filesystem::path damaged_folder(Choices& choices)
     const testing::MadeRun& run = made_run();
     const std::size_t what = choices.below(6);
     const std::size_t cycles = 1 + choices.below(run.cycles.size());
-    RunRecord record{.identity = run.identity};
+    RunRecord record;
+    record.identity = run.identity;
     for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
         CycleRecord of_cycle = run.records[cycle];
         std::string solution = run.cycles[cycle];

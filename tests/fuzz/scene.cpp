@@ -61,7 +61,7 @@ private:
     }
 
     /// In a plane across an axis.
-    std::vector<Vec3> flat(std::size_t corners, std::size_t axis, double level)
+    std::vector<Vec3> flat(std::size_t corners, int axis, double level)
     {
         std::vector<Vec3> outline;
         for (std::size_t k = 0; k < corners; ++k) {
@@ -73,7 +73,7 @@ private:
         return outline;
     }
 
-    std::vector<Vec3> rectangle(std::size_t axis)
+    std::vector<Vec3> rectangle(int axis)
     {
         const std::vector<Vec3> ends = flat(2, axis, length());
         Vec3 right = ends[0], left = ends[0];
@@ -118,7 +118,8 @@ private:
 
     void add()
     {
-        const std::size_t kind = choices_.below(8), material = choices_.below(4), axis = choices_.below(3);
+        const std::size_t kind = choices_.below(8), material = choices_.below(4);
+        const int axis = static_cast<int>(choices_.below(3));
         switch (kind) {
         case 0:
         case 1: {
