@@ -13,9 +13,14 @@ namespace {
 using testing::Choices;
 using testing::made_run;
 
+struct Damaged {
+    std::filesystem::path folder;
+    std::size_t cycles = 0;  ///< the last of which may be damaged
+};
+
 /// The folder of the made run when it was killed after its second cycle, and what the choices damage in it. A solution
 /// that is damaged keeps its digest, or is given a new one.
-std::filesystem::path damaged_folder(Choices& choices)
+Damaged damaged_folder(Choices& choices)
 {
     const std::filesystem::path folder = testing::fuzz_folder().path() / "run";
     std::filesystem::remove_all(folder);
@@ -43,7 +48,7 @@ std::filesystem::path damaged_folder(Choices& choices)
     testing::fuzz_folder().write("run/run.json", text);
     testing::fuzz_folder().write("run/timing.json",
                                  what == 5 ? choices.rest() : std::string(R"({"cycles": [{"cycle": 0}]})"));
-    return folder;
+    return {folder, cycles};
 }
 
 /// As SolveRun does, to the end.
@@ -76,8 +81,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Choices choices(data, size);
     try {
         FileWriter writer;
-        RunFolder folder(damaged_folder(choices), made_run().identity, writer);
-        if (folder.state() != FolderState::finished) resume(folder);
+        const Damaged damaged = damaged_folder(choices);
+        RunFolder folder(damaged.folder, made_run().identity, writer);
+        // What is left without the damaged cycle is known to go on.
+        if (folder.state() != FolderState::finished && folder.record().cycles.size() == damaged.cycles) resume(folder);
     } catch (const FolderRefused&) {
     } catch (const SceneError&) {
     } catch (const InvariantError&) {}

@@ -17,7 +17,7 @@ namespace {
 
 using testing::Choices;
 
-constexpr std::size_t lamp = 3, most_faces = 24;
+constexpr std::size_t lamp = 3, most_faces = 10;
 
 /// A scene of polygons that touch, overlap, cross themselves or have no area, as bytes choose them.
 class ChosenScene {
@@ -167,8 +167,8 @@ private:
 AdaptiveOptions chosen_options(Choices& choices)
 {
     AdaptiveOptions options;
-    options.max_elements = 60;
-    options.iterations = 2;
+    options.max_elements = 24;
+    options.iterations = 1;
     options.form_factors.rays = options.gather.rays = options.gather.shadow_rays = 16;
     options.form_factors.resolution = 8;
     options.estimate.rays = 16;
