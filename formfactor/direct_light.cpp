@@ -31,8 +31,9 @@ DirectLight::DirectLight(const Scene& scene, std::span<const SurfaceId> sources,
 {
     const std::vector<Facet> facets = facets_of(scene);
     for (std::size_t k = 0; k < sources_.size(); ++k)
-        for (const Facet& facet : std::ranges::equal_range(facets, sources_[k], {}, &Facet::surface))
-            parts_.push_back({k, facet, glm::dot(facet.normal, facet.corners[0])});
+        for (auto f = std::ranges::lower_bound(facets, sources_[k], {}, &Facet::surface);
+             f != facets.end() && f->surface == sources_[k]; ++f)
+            parts_.push_back({k, *f, glm::dot(f->normal, f->corners[0])});
     std::vector<std::size_t> reflecting;
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
         Receiver& receiver = receivers_.emplace_back();

@@ -51,9 +51,9 @@ public:
         tree_.order.reserve(mesh_.patch_count());
         tree_.area_upto.reserve(mesh_.patch_count() + 1);
         tree_.area_upto.push_back(0);
-        const auto dark = std::ranges::stable_partition(
-            items, [&](const Item& i) { return lit.empty() || lit[i.surface.value] != 0; });
-        const std::size_t first = items.size() - dark.size();
+        const auto dark = std::stable_partition(
+            items.begin(), items.end(), [&](const Item& i) { return lit.empty() || lit[i.surface.value] != 0; });
+        const auto first = static_cast<std::size_t>(dark - items.begin());
         if (first > 0 && first < items.size())
             add_parent(items, first);
         else if (!items.empty())
@@ -119,7 +119,7 @@ private:
             widest = std::max(widest, i.width);
         }
         const auto parted = [&](const auto& first) {
-            return static_cast<std::size_t>(std::ranges::stable_partition(items, first).begin() - items.begin());
+            return static_cast<std::size_t>(std::stable_partition(items.begin(), items.end(), first) - items.begin());
         };
         if (const int k = longest(normals.extent()); normals.extent()[k] > same_direction) {
             const double middle = 0.5 * (normals.low[k] + normals.high[k]);

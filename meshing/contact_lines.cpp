@@ -141,7 +141,7 @@ std::vector<SurfaceLine> find_contact_lines(const Scene& scene, double snap)
     std::vector<SurfaceLine> lines;
     for (const auto& [id, pieces] : contact_pieces(scene, snap)) {
         Chains chains(pieces, scene.vertices, snap);
-        const auto at = [&](std::uint32_t v) { return scene.surface(id).frame.to_plane(scene.vertices[v]); };
+        const auto at = [&, id = id](std::uint32_t v) { return scene.surface(id).frame.to_plane(scene.vertices[v]); };
         while (const auto ends = chains.take())
             lines.push_back({id, LineKind::contact, at(ends->first), at(ends->second)});
     }

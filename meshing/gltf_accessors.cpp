@@ -169,6 +169,8 @@ GltfTriangles read_triangles(const GltfFile& gltf, const tinygltf::Primitive& pr
 {
     const int position = position_accessor(primitive);
     if (position < 0) refuse(where, "has no POSITION");
+    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        refuse(where, fmt::format("has no known mode: {}", primitive.mode));
     const Elements elements = open_accessor(gltf, position, TINYGLTF_TYPE_VEC3, where);
     const std::vector<std::size_t> indices = read_indices(gltf, primitive.indices, elements.count, where);
     const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode < 0;

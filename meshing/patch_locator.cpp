@@ -100,7 +100,9 @@ std::uint32_t PatchLocator::build_grid(const Box& box, const std::vector<std::ui
             high = glm::max(high, mesh_->plane_position(v));
         }
         const auto cell_at = [](double x, double x0, double cell, int n) {
-            return static_cast<int>(std::clamp(std::floor((x - x0) / cell), 0.0, static_cast<double>(n - 1)));
+            // Not of a number, too: where floats make nothing of a cell's width.
+            const double at = std::floor((x - x0) / cell);
+            return at > 0 ? static_cast<int>(std::min(at, static_cast<double>(n - 1))) : 0;
         };
         const int ix0 = cell_at(low.x - 0.02 * dx, box.x0, dx, grid.nx),
                   ix1 = cell_at(high.x + 0.02 * dx, box.x0, dx, grid.nx);

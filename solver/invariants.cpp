@@ -102,7 +102,7 @@ void check_rows(const RadiositySystem& system, bool closed, const InvariantToler
         sums.hold(std::abs(all - 1) <= tolerances.row_sum ? 0 : std::abs(all - 1), all, p);
     }
     sums.report_to(broken);
-    if (std::isinf(tolerances.reciprocity)) return;
+    if (std::isinf(tolerances.reciprocity) || F.size() == 0) return;
     const ReciprocityDefect defect = audit(F, system.area, closed).reciprocity;
     if (defect.worst > tolerances.reciprocity)
         broken.push_back({"A_i F_ij is not A_j F_ji", 1, defect.worst, defect.first, defect.second});

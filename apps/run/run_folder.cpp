@@ -17,6 +17,45 @@ std::string text_of(const Json& json)
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+constexpr std::size_t deepest_json = 64;
+
+/// A file of JSON; throws std::exception. Deeper nesting than any of ours would overflow the stack where it is written.
+Json json_in(const std::filesystem::path& file)
+{
+    const std::string text = read_bytes(file);
+    if (json_depth(text) > deepest_json) {
+        throw std::runtime_error("is nested too deeply");
+    }
+    return Json::parse(text);
+}
+
+/// A timing.json as we write it, or nothing: only seconds are lost.
+Json timing_in(const std::filesystem::path& file)
+{
+    try {
+        Json timing = json_in(file);
+        return timing.is_object() ? timing : Json();
+    } catch (const std::exception&) {
+        return Json();
+    }
+}
+
+/// The seconds of the cycles before this one that timing.json holds.
+Json seconds_before(int cycle, const Json& timing)
+{
+    Json kept = Json::array();
+    if (!timing.is_object() || !timing.contains("cycles") || !timing["cycles"].is_array()) {
+        return kept;
+    }
+    for (const Json& old : timing["cycles"]) {
+        const auto number = old.is_object() ? old.find("cycle") : old.end();
+        if (number != old.end() && number->is_number_integer() && number->get<std::int64_t>() < cycle) {
+            kept.push_back(old);
+        }
+    }
+    return kept;
+}
+
 /// Anything in the folder that isn't named, and isn't a temporary of ours?
 bool holds_others(const std::filesystem::path& folder, const std::vector<std::string>& named)
 {
@@ -90,11 +129,7 @@ void RunFolder::take(const RunIdentity& identity, const std::vector<std::string>
     }
     state_ = finished ? FolderState::finished : FolderState::unfinished;
     record_ = std::move(stored.record);
-    try {
-        timing_ = Json::parse(read_bytes(folder_ / "timing.json"));
-    } catch (const std::exception&) {
-        timing_ = Json();  // Only seconds are lost.
-    }
+    timing_ = timing_in(folder_ / "timing.json");
 }
 
 /// A killed program may have left a cycle half written, and run.json a cycle behind: the records on the disk count.
@@ -106,7 +141,7 @@ void RunFolder::keep_whole_cycles()
         const std::filesystem::path folder = cycle_folder(cycle);
         FileWriter::sweep(folder);
         try {
-            const CycleRecord record = cycle_record_in(Json::parse(read_bytes(folder / "record.json")));
+            const CycleRecord record = cycle_record_in(json_in(folder / "record.json"));
             if (record.cycle != cycle || sha256_hex(read_bytes(folder / "solution.glb")) != record.solution_sha256) {
                 return;
             }
@@ -178,14 +213,7 @@ void RunFolder::finish_cycle(const CycleRecord& record, const Json& seconds)
     const std::lock_guard lock(mutex_);
     record_.cycles.push_back(record);
     write_record();
-    Json kept = Json::array();
-    if (timing_.is_object() && timing_.contains("cycles") && timing_["cycles"].is_array()) {
-        for (const Json& old : timing_["cycles"]) {
-            if (old.is_object() && old.value("cycle", record.cycle) < record.cycle) {
-                kept.push_back(old);
-            }
-        }
-    }
+    Json kept = seconds_before(record.cycle, timing_);
     kept.push_back(seconds);
     timing_["cycles"] = kept;
     put("timing.json", text_of(timing_));

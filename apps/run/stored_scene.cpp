@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace patchlight {
@@ -121,10 +122,32 @@ private:
     std::size_t next_ = 0;
 };
 
+/// Orthonormal up to far more than rounding, or what is computed in it overflows.
 PlaneFrame frame_in(const double* numbers)
 {
     const auto vector = [&](int i) { return Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]}; };
-    return {vector(0), vector(1), vector(2), vector(3)};
+    const PlaneFrame frame{vector(0), vector(1), vector(2), vector(3)};
+    const bool unit =
+        std::abs(glm::dot(frame.u, frame.u) - 1) < 1e-6 && std::abs(glm::dot(frame.v, frame.v) - 1) < 1e-6;
+    if (!unit || !(std::abs(glm::dot(frame.u, frame.v)) < 1e-6) ||
+        !(glm::length(glm::cross(frame.u, frame.v) - frame.n) < 1e-6)) {
+        throw SceneError("solution", "a stored surface has no frame");
+    }
+    return frame;
+}
+
+/// Sizes that reading a scene lets pass, and places near the centre: up to rounding within half the diameter.
+void check_sizes(const Scene& scene)
+{
+    if (!(scene.diameter > 1e-100) || !(scene.diameter < 1e100) || !(scene.unit > 0)) {
+        throw SceneError("solution", "the stored scene has no size");
+    }
+    const auto near = [&](const Vec3& p) { return glm::length(p) <= scene.diameter; };
+    const bool all = std::ranges::all_of(scene.vertices, near) &&
+                     std::ranges::all_of(scene.surfaces, [&](const Surface& s) { return near(s.frame.origin); });
+    if (!all) {
+        throw SceneError("solution", "a stored vertex lies outside the scene");
+    }
 }
 
 void restore_surfaces(const ByteViews& views, Scene& scene)
@@ -230,6 +253,7 @@ Scene restore_scene(const ByteViews& views)
     restore_surfaces(views, scene);
     restore_triangles(views, scene);
     restore_contact_lines(views, scene);
+    check_sizes(scene);
     return scene;
 }
 

@@ -5,7 +5,9 @@
 #include "apps/run/stored_scene.h"
 #include "meshing/scene_error.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace patchlight {
 
@@ -109,7 +111,12 @@ StoredSolution restore(const ByteViews& views)
 {
     StoredSolution stored;
     stored.scene = restore_scene(views);
-    stored.mesh = PatchMesh(stored.scene, arrays_in(views, stored.scene));
+    PatchMeshArrays arrays = arrays_in(views, stored.scene);
+    if (std::ranges::any_of(arrays.positions,
+                            [&](const Vec3& p) { return !(glm::length(p) <= stored.scene.diameter); })) {
+        throw SceneError("solution", "a vertex lies outside the scene");
+    }
+    stored.mesh = PatchMesh(stored.scene, std::move(arrays));
     const std::size_t patches = stored.mesh.patch_count(), vertices = stored.mesh.vertex_count();
     stored.B = Radiosity(of_size(vectors_in(views, "patch_radiosity"), patches));
     stored.vertex_B = VertexRadiosity(of_size(vectors_in(views, "vertex_radiosity"), vertices));

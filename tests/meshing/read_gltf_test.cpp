@@ -198,6 +198,14 @@ TEST(ReadGltf, strips_and_fans_are_triangles)
     EXPECT_THAT(error_of_document(document), StartsWith("empty: "));
 }
 
+// Found by fuzzing: its corners were looked for as a list's, of as many triangles as a strip has.
+TEST(ReadGltf, a_mode_that_glTF_does_not_have_is_refused)
+{
+    json document = square_document();
+    document["meshes"][0]["primitives"][0]["mode"] = 7;
+    EXPECT_THAT(error_of_document(document), HasSubstr("has no known mode: 7"));
+}
+
 TEST(ReadGltf, a_rotated_room_in_single_precision_is_still_joined)
 {
     std::vector<float> positions;

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <functional>
 #include <random>
 
 namespace patchlight {
@@ -150,6 +151,24 @@ TEST(StoredSolution, DamagedBytesNeverCrash)
         }
     }
     EXPECT_GT(refused, 100) << "damage in the header, an index or a size must be seen";
+}
+
+// Found by fuzzing: a frame of huge vectors made plane coordinates that are not numbers, and of these, indices.
+TEST(StoredSolution, PlacesAndFramesThatCannotBeAreRefused)
+{
+    using Change = std::function<void(Stored&)>;
+    const std::vector<Change> changes{[](Stored& s) { s.scene.surfaces[0].frame.u *= 1e200; },
+                                      [](Stored& s) { s.scene.surfaces[0].frame.n *= -1; },
+                                      [](Stored& s) { s.scene.surfaces[0].frame.v = s.scene.surfaces[0].frame.u; },
+                                      [](Stored& s) { s.scene.surfaces[0].frame.origin.x = 1e300; },
+                                      [](Stored& s) { s.scene.vertices[0].y = -1e300; },
+                                      [](Stored& s) { s.scene.diameter = 0; },
+                                      [](Stored& s) { s.scene.unit = -1; }};
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+        Stored stored;
+        changes[k](stored);
+        EXPECT_THROW(decode_solution(stored.encoded(), "changed"), SceneError) << k;
+    }
 }
 
 TEST(StoredSolution, DeepNestingIsRefusedBeforeItIsParsed)

@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+// Defined where it is compiled: FUZZ_TARGET(name) for each target.
+#define FUZZ_TARGET(name) extern "C" int fuzz_##name(const std::uint8_t* data, std::size_t size);
+FUZZ_TARGETS
+#undef FUZZ_TARGET
+
+namespace {
+
+struct Target {
+    const char* name;
+    int (*run)(const std::uint8_t*, std::size_t);
+};
+
+#define FUZZ_TARGET(name) {#name, fuzz_##name},
+constexpr Target targets[] = {FUZZ_TARGETS};
+#undef FUZZ_TARGET
+
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
+{
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+/// Whether the target takes the file, in less than 5 s.
+bool holds(const Target& target, const std::filesystem::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+    // A crash says no more than this line does.
+    std::printf("%s: %s\n", target.name, file.filename().c_str());
+    std::fflush(stdout);
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        target.run(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    } catch (const std::exception& error) {
+        std::printf("  FAILED: %s\n", error.what());
+        return false;
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (seconds.count() > 5) std::printf("  FAILED: took %.1f s\n", seconds.count());
+    return seconds.count() <= 5;
+}
+
+}  // namespace
+
+/// Gives each target the files of CORPUS/TARGET: what fuzzing found once is not found again.
+int main(int argc, char** argv)
+{
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: fuzz_replay CORPUS\n");
+        return 2;
+    }
+    int failures = 0;
+    for (const Target& target : targets) {
+        const auto files = files_in(std::filesystem::path(argv[1]) / target.name);
+        if (files.empty()) {
+            std::printf("%s: FAILED: no files\n", target.name);
+            ++failures;
+        }
+        for (const auto& file : files) failures += holds(target, file) ? 0 : 1;
+    }
+    return failures == 0 ? 0 : 1;
+}
