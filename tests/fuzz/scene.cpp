@@ -171,6 +171,7 @@ AdaptiveOptions chosen_options(Choices& choices)
     options.iterations = 1;
     options.form_factors.rays = options.gather.rays = options.gather.shadow_rays = 16;
     options.form_factors.resolution = 8;
+    options.form_factors.tolerance = 0.05;
     options.estimate.rays = 16;
     static constexpr Refine refines[] = {Refine::both, Refine::intensity, Refine::discontinuity, Refine::none};
     static constexpr Solver solvers[] = {Solver::gauss_seidel, Solver::progressive,        Solver::jacobi,
