@@ -155,6 +155,10 @@ void SolveRun::solve_from(const RunRecord& before)
     if (!before.cycles.empty()) {
         const CycleRecord& last = before.cycles.back();
         StoredSolution solution = stored(last.cycle);
+        if (scene_digest(solution.scene) != scene_digest(input_.scene)) {
+            throw FolderRefused(
+                fmt::format("{}: its cycle {} is of another scene", folder_.path().string(), last.cycle));
+        }
         from.emplace(
             AdaptiveStart{last.cycle,
                           std::move(solution.mesh),

@@ -1,6 +1,8 @@
+#include "apps/run/sha256.h"
 #include "tests/command/command_runner.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace patchlight::testing {
 namespace {
@@ -99,6 +101,31 @@ TEST_F(RunFolderTest, AFinishedRunSaysSoAndStays)
     EXPECT_EQ(scene.code, 2);
     EXPECT_THAT(scene.err, HasSubstr("earlier state"));
     EXPECT_EQ(files_in(folder_ / "run"), before);
+}
+
+// A cycle with a forged digest: what it holds must not be taken for light on this scene's surfaces.
+TEST_F(RunFolderTest, ACycleOfAnotherSceneIsNotGoneOnFrom)
+{
+    ASSERT_EQ(run(solve("run", {"--pictures", "none"})).code, 0);
+    auto record = nlohmann::json::parse(text_of(folder_ / "run/run.json"));
+    ASSERT_GT(record["cycles"].size(), 1U);
+    ASSERT_EQ(run(small({"solve", PATCHLIGHT_DATA "/scenes/cornell-box.obj", "--unit", "mm", "-o", path("other"),
+                         "--pictures", "none"}))
+                  .code,
+              0);
+    const std::string bytes = text_of(folder_ / "other/cycles/00/solution.glb");
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "run/cycles"))
+        if (entry.path().filename() != "00") std::filesystem::remove_all(entry.path());
+    write_text(folder_ / "run/cycles/00/solution.glb", bytes);
+    auto cycle = nlohmann::json::parse(text_of(folder_ / "run/cycles/00/record.json"));
+    record["status"] = "interrupted";
+    cycle["solution_sha256"] = record["cycles"][0]["solution_sha256"] = record["files"]["cycles/00/solution.glb"] =
+        sha256_hex(bytes);
+    write_text(folder_ / "run/cycles/00/record.json", cycle.dump());
+    write_text(folder_ / "run/run.json", record.dump());
+    const Outcome again = run(solve("run", {"--pictures", "none"}));
+    EXPECT_EQ(again.code, 2);
+    EXPECT_THAT(again.err, HasSubstr("cycle 0 is of another scene"));
 }
 
 TEST_F(RunFolderTest, AFolderThatCannotBeMadeIsSix)
