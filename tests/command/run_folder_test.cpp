@@ -107,7 +107,7 @@ TEST_F(RunFolderTest, AFinishedRunSaysSoAndStays)
 TEST_F(RunFolderTest, ACycleOfAnotherSceneIsNotGoneOnFrom)
 {
     ASSERT_EQ(run(solve("run", {"--pictures", "none"})).code, 0);
-    auto record = nlohmann::json::parse(text_of(folder_ / "run/run.json"));
+    auto record = nlohmann::ordered_json::parse(text_of(folder_ / "run/run.json"));
     ASSERT_GT(record["cycles"].size(), 1U);
     const std::string box = PATCHLIGHT_DATA "/scenes/cornell-box.obj";
     ASSERT_EQ(
@@ -117,7 +117,7 @@ TEST_F(RunFolderTest, ACycleOfAnotherSceneIsNotGoneOnFrom)
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "run/cycles"))
         if (entry.path().filename() != "00") std::filesystem::remove_all(entry.path());
     write_text(folder_ / "run/cycles/00/solution.glb", bytes);
-    auto cycle = nlohmann::json::parse(text_of(folder_ / "run/cycles/00/record.json"));
+    auto cycle = nlohmann::ordered_json::parse(text_of(folder_ / "run/cycles/00/record.json"));
     record["status"] = "interrupted";
     cycle["solution_sha256"] = record["cycles"][0]["solution_sha256"] = record["files"]["cycles/00/solution.glb"] =
         sha256_hex(bytes);
