@@ -1,9 +1,11 @@
 #include "apps/imaging/exposure.h"
 #include "apps/imaging/image_file_module.h"
 
+#include <cstddef>
 #include <dlfcn.h>
 #include <new>
 #include <stdexcept>
+#include <sys/mman.h>
 
 namespace patchlight {
 
@@ -12,8 +14,19 @@ namespace {
 constexpr const char* module_name = "patchlight_image_file.so";
 constexpr const char* entry_name = "patchlight_image_file_module";
 
+/// OpenImageIO's libraries take 430 MiB of addresses, and their threads stacks and arenas: where a limit (ulimit -v)
+/// leaves less, one of them crashes while it is loaded.
+void require_addresses()
+{
+    constexpr std::size_t needed = std::size_t{640} << 20;
+    void* const place = ::mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (place == MAP_FAILED) throw std::bad_alloc();
+    ::munmap(place, needed);
+}
+
 const ImageFileModule& load_module()
 {
+    require_addresses();
     // By its name alone: the program's run path says where it lies, in the build folder or installed. Never closed.
     void* const library = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
     const void* const entry = library ? dlsym(library, entry_name) : nullptr;

@@ -11,6 +11,7 @@
 #include <exception>
 #include <new>
 #include <string_view>
+#include <system_error>
 #include <unistd.h>
 
 namespace patchlight {
@@ -111,6 +112,11 @@ int run_and_report(int argc, const char* const* argv, Session& session)
         return session.interruption.exit_code();
     } catch (const PipeClosed&) {
         return 128 + SIGPIPE;
+    } catch (const std::system_error& error) {
+        // A thread's stack did not fit, or there are as many threads as may be.
+        const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+        say.error(no_thread ? "memory" : "internal", no_thread ? "not enough memory for another thread" : error.what());
+        return no_thread ? 5 : 1;
     } catch (const std::exception& error) {
         say.error("internal", error.what());
         return 1;

@@ -1,10 +1,12 @@
 """Fuzzes every reader, and the way from polygons to light, with libFuzzer under ASan and UBSan.
 
-    python3 tests/fuzz/run.py [--seconds N] [--seed N] [--targets NAME,...] [--json FILE] [--keep FOLDER]
+    python3 tests/fuzz/run.py [--seconds N] [--seed N] [--repeatable] [--targets NAME,...] [--json FILE] [--keep FOLDER]
 
 Builds build-fuzz in the sources' folder first where it is missing or old: clang++ is needed. Two targets run at once.
 A line a target says how many inputs were tried, how many of them reached something new, and how many edges of the
 program were reached. Inputs that crash a target, or take it 10 s or 2 GiB, are kept in build-fuzz/found; exit code 1.
+--repeatable: the same inputs on every machine, no more of them than were once tried in that time, and 100 s for each: a
+test must not fail by what only a faster machine comes to. What is new is looked for without it, with another --seed.
 --keep: what reached something new, beyond the corpus, is kept there and taken up again. Without clang++: exit code 77.
 """
 
@@ -12,6 +14,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import queue
 import re
 import shutil
 import subprocess
@@ -24,6 +27,9 @@ BUILD = SOURCE / "build-fuzz"
 CORPUS = SOURCE / "tests" / "fuzz" / "corpus"
 WORDS = SOURCE / "tests" / "fuzz" / "words"
 FOUND = BUILD / "found"
+# By target, --repeatable: what two cores with nothing else to do try in 30 s.
+EXECUTIONS = {"checkpoint": 150, "configuration": 30000, "gltf": 30000, "mtl": 200000, "obj": 8000, "points": 200000,
+              "record": 30000, "scene": 100, "solution": 8000, "study": 40000}
 
 
 def build():
@@ -43,8 +49,8 @@ def last_number(pattern, text):
     return int(found[-1]) if found else 0
 
 
-def fuzz(name, program, options):
-    """What became of one target."""
+def fuzz(name, program, core, options):
+    """What became of one target, on one core: with threads no run is like another."""
     # In memory: readers of files write one for each input.
     memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
     with tempfile.TemporaryDirectory(prefix="patchlight-fuzz-", dir=memory) as scratch:
@@ -53,11 +59,14 @@ def fuzz(name, program, options):
         environment = dict(os.environ, TMPDIR=scratch, ASAN_OPTIONS="allocator_may_return_null=1",
                            UBSAN_OPTIONS="print_stacktrace=1")
         command = [program, kept, CORPUS / name, f"-max_total_time={options.seconds}", f"-seed={options.seed}",
-                   "-rss_limit_mb=2048", "-timeout=10", "-print_final_stats=1", f"-artifact_prefix={FOUND / name}-"]
+                   "-rss_limit_mb=2048", f"-timeout={100 if options.repeatable else 10}", "-print_final_stats=1", f"-artifact_prefix={FOUND / name}-"]
+        if options.repeatable:
+            command.append(f"-runs={EXECUTIONS[name]}")
         if (WORDS / name).exists():
             command.append(f"-dict={WORDS / name}")
         done = subprocess.run(list(map(str, command)), env=environment, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, errors="replace")
+                              stderr=subprocess.PIPE, errors="replace",
+                              preexec_fn=lambda: os.sched_setaffinity(0, {core}))
         inputs = sum(1 for _ in kept.iterdir())
     said = done.stderr
     artifact = re.search(r"Test unit written to (\S+)", said)
@@ -84,6 +93,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=int, default=30, help="for each target [30]")
     parser.add_argument("--seed", type=int, default=1, help="of libFuzzer's random numbers [1]")
+    parser.add_argument("--repeatable", action="store_true", help="the same inputs each time, and no more")
     parser.add_argument("--targets", help="names, with commas between [all]")
     parser.add_argument("--json", type=Path, help="where the figures go as JSON [nowhere]")
     parser.add_argument("--keep", type=Path, help="folder for inputs that reach something new [none]")
@@ -96,9 +106,19 @@ def main():
     chosen = programs()
     if options.targets:
         chosen = {name: chosen[name] for name in options.targets.split(",")}
-    results = []
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for future in [pool.submit(fuzz, name, program, options) for name, program in chosen.items()]:
+    results, cores = [], queue.SimpleQueue()
+    for core in sorted(os.sched_getaffinity(0))[:2]:
+        cores.put(core)
+
+    def on_a_core(name, program):
+        core = cores.get()
+        try:
+            return fuzz(name, program, core, options)
+        finally:
+            cores.put(core)
+
+    with concurrent.futures.ThreadPoolExecutor(cores.qsize()) as pool:
+        for future in [pool.submit(on_a_core, name, program) for name, program in chosen.items()]:
             results.append(future.result())
             print(line_of(results[-1]), flush=True)
     if options.json:
