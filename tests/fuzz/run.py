@@ -28,8 +28,8 @@ CORPUS = SOURCE / "tests" / "fuzz" / "corpus"
 WORDS = SOURCE / "tests" / "fuzz" / "words"
 FOUND = BUILD / "found"
 # By target, --repeatable: what two cores with nothing else to do try in 30 s.
-EXECUTIONS = {"checkpoint": 150, "configuration": 30000, "gltf": 30000, "mtl": 200000, "obj": 8000, "points": 200000,
-              "record": 30000, "scene": 100, "solution": 8000, "study": 40000}
+EXECUTIONS = {"checkpoint": 600, "configuration": 100_000, "gltf": 120_000, "mtl": 450_000, "obj": 70_000,
+              "points": 600_000, "record": 80_000, "scene": 180, "solution": 40_000, "study": 120_000}
 
 
 def build():
