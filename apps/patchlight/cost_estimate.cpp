@@ -21,7 +21,7 @@ namespace {
 // A triangle of a Delaunay mesh with longest edge L covers about a quarter of L².
 constexpr double area_per_squared_edge = 0.25;
 // Before anything is read; of a surface, its blockers and lines; and beside the rows: mesh, fields and their copies.
-constexpr double program_bytes = 2e7;
+constexpr double program_bytes = 1.7e7;
 constexpr double bytes_per_surface = 2e4;
 constexpr double bytes_per_element = 1500;
 // Processor seconds, measured on the shipped scenes from 500 to 8,000 elements, where they are right within four times:
