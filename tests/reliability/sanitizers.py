@@ -27,7 +27,7 @@ LEFT_OUT = {
     r"^study\.slurm$": "a cluster of its own, with the ordinary build's limits",
     r"^benchmark\.": "seconds are all they tell",
 }
-SUITES = ("meshing", "formfactor", "solver", "run", "imaging")
+SUITES = ("formfactor", "solver", "run", "imaging")
 RACE = """
 #include <tbb/parallel_for.h>
 int main()
