@@ -7,6 +7,7 @@
 #include "apps/patchlight/run_pictures.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/patchlight/view_choice.h"
+#include "apps/run/whole_number.h"
 
 #include <fmt/format.h>
 
@@ -51,8 +52,8 @@ Frames frames_of_shots(const ChosenRun& chosen, Session& session)
     const Json& options = chosen.run.record.identity.options;
     std::vector<int> shots;
     try {
-        shots = options.at("pictures").at("snapshots").get<std::vector<int>>();
-    } catch (const nlohmann::json::exception&) {
+        shots = whole_numbers_in<int>(options.at("pictures").at("snapshots"));
+    } catch (const std::exception&) {
         // Told below.
     }
     if (shots.empty()) {

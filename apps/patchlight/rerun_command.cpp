@@ -6,6 +6,7 @@
 #include "apps/patchlight/usage_error.h"
 #include "apps/run/check_files.h"
 #include "apps/run/stored_scene.h"
+#include "apps/run/whole_number.h"
 #include "meshing/scene_error.h"
 
 #include <fmt/format.h>
@@ -44,8 +45,8 @@ PictureArguments pictures_in(const Json& json)
 {
     PictureArguments pictures;
     pictures.pictures = json.at("written") == "all";
-    pictures.size = {json.at("width").get<int>(), json.at("height").get<int>()};
-    pictures.snapshots = json.at("snapshots").get<std::vector<int>>();
+    pictures.size = {whole_number_in<int>(json.at("width")), whole_number_in<int>(json.at("height"))};
+    pictures.snapshots = whole_numbers_in<int>(json.at("snapshots"));
     return pictures;
 }
 

@@ -2,6 +2,7 @@
 
 #include "apps/patchlight/argument_values.h"
 #include "apps/run/stored_scene.h"
+#include "apps/run/whole_number.h"
 
 namespace patchlight {
 
@@ -30,8 +31,8 @@ std::optional<double> seconds_until(const OpenedRun& run, const CycleRecord& cyc
         bool found = false;
         const Json timing = Json::parse(text);
         for (const Json& one : timing.at("cycles")) {
-            if (one.at("cycle").get<int>() > cycle.cycle) continue;
-            found = found || one.at("cycle").get<int>() == cycle.cycle;
+            if (whole_number_in<int>(one.at("cycle")) > cycle.cycle) continue;
+            found = found || whole_number_in<int>(one.at("cycle")) == cycle.cycle;
             for (const auto& [stage, seconds] : one.at("seconds").items()) sum += seconds.get<double>();
         }
         return found ? std::optional(sum) : std::nullopt;

@@ -3,6 +3,7 @@
 #include "apps/patchlight/study_options.h"
 #include "apps/patchlight/study_pictures.h"
 #include "apps/run/stored_scene.h"
+#include "apps/run/whole_number.h"
 #include "meshing/scene_error.h"
 
 namespace patchlight {
@@ -26,9 +27,9 @@ std::optional<double> number_in(const Json& json)
 CycleResult cycle_in(const Json& json)
 {
     CycleResult c;
-    c.cycle = json.at("cycle").get<int>();
-    c.elements = json.at("elements").get<std::size_t>();
-    c.rays = json.at("rays").get<std::size_t>();
+    c.cycle = whole_number_in<int>(json.at("cycle"));
+    c.elements = whole_number_in<std::size_t>(json.at("elements"));
+    c.rays = whole_number_in<std::size_t>(json.at("rays"));
     c.estimated_error = number_in(json.at("estimated_error")).value_or(0);
     c.error = number_in(json.at("error"));
     const Json& range = json.at("error_ci");
@@ -55,7 +56,8 @@ std::vector<CellResult> cells_in(const Json& json, const Study& study)
         const Json& own = stored.at(cells.size());
         CellResult result;
         result.cell = cell;
-        if (own.at("index").get<std::size_t>() != cell.index) throw std::runtime_error("is of another study.toml");
+        if (whole_number_in<std::size_t>(own.at("index")) != cell.index)
+            throw std::runtime_error("is of another study.toml");
         // Only a name of a folder beside the others.
         result.id = std::filesystem::path(own.at("id").get<std::string>()).filename().string();
         result.status = status_in(own.at("status").get<std::string>());
@@ -112,7 +114,7 @@ ShownStudy stored_study(const StudyFolder& folder)
     try {
         const Json json = json_in(file);
         shown.sha256 = json.at("study").at("sha256").get<std::string>();
-        shown.seed = json.at("study").at("seed").get<std::uint64_t>();
+        shown.seed = whole_number_in<std::uint64_t>(json.at("study").at("seed"));
         shown.result.name = json.at("study").at("name").get<std::string>();
         shown.result.cells = cells_in(json, study);
     } catch (const std::exception& problem) {

@@ -1,5 +1,8 @@
 #include "apps/run/run_options.h"
+#include "apps/run/whole_number.h"
 #include "meshing/scene_error.h"
+
+#include <fmt/format.h>
 
 #include <type_traits>
 
@@ -146,12 +149,15 @@ struct Reader {
         } else if constexpr (std::is_same_v<T, bool>) {
             value = found.get<bool>();
         } else {
-            // JSON's getter would turn 1.5 or -1 into whatever fits.
-            if (!found.is_number() || (std::is_integral_v<T> && !found.is_number_integer()) ||
-                (std::is_unsigned_v<T> && !found.is_number_unsigned())) {
-                throw std::invalid_argument(std::string(name) + " is not a number of its kind");
+            try {
+                if constexpr (std::is_integral_v<T>) {
+                    value = whole_number_in<T>(found);
+                } else {
+                    value = found.get<T>();
+                }
+            } catch (const std::exception& problem) {
+                throw std::invalid_argument(fmt::format("\"{}\": {}", name, problem.what()));
             }
-            value = found.get<T>();
         }
     }
     template <class Mode>

@@ -1,6 +1,7 @@
 #include "apps/run/run_record.h"
 
 #include "apps/run/stored_scene.h"
+#include "apps/run/whole_number.h"
 #include "meshing/scene_error.h"
 
 namespace patchlight {
@@ -53,8 +54,8 @@ LineCounts line_counts_in(const Json& json)
     LineCounts counts;
     for (const LineKind kind : line_kinds) {
         const Json& count = json.at(std::string(name_of(kind)));
-        counts[static_cast<std::size_t>(kind)] = {count.at("found").get<std::size_t>(),
-                                                  count.at("inserted").get<std::size_t>()};
+        counts[static_cast<std::size_t>(kind)] = {whole_number_in<std::size_t>(count.at("found")),
+                                                  whole_number_in<std::size_t>(count.at("inserted"))};
     }
     return counts;
 }
@@ -62,25 +63,25 @@ LineCounts line_counts_in(const Json& json)
 CycleRecord cycle_in(const Json& json)
 {
     CycleRecord r;
-    r.cycle = json.at("cycle").get<int>();
+    r.cycle = whole_number_in<int>(json.at("cycle"));
     r.stage = mode_of(stage_names(), json.at("stage").get<std::string>());
-    r.elements = json.at("elements").get<std::size_t>();
-    r.vertices = json.at("vertices").get<std::size_t>();
-    r.rays = json.at("rays").get<std::size_t>();
+    r.elements = whole_number_in<std::size_t>(json.at("elements"));
+    r.vertices = whole_number_in<std::size_t>(json.at("vertices"));
+    r.rays = whole_number_in<std::size_t>(json.at("rays"));
     r.estimated_error = json.at("estimated_error").get<double>();
     r.error_total = json.at("error_total").get<double>();
     r.unshot = json.at("unshot").get<double>();
     const Json& solve = json.at("solve");
     r.solver = mode_of(solver_names(), solve.at("solver").get<std::string>());
-    r.solver_iterations = solve.at("iterations").get<std::size_t>();
+    r.solver_iterations = whole_number_in<std::size_t>(solve.at("iterations"));
     r.solver_residual = solve.at("residual").get<double>();
     r.solver_converged = solve.at("converged").get<bool>();
     // Runs of the versions before have none.
     if (solve.contains("history")) {
         r.solver_history = solve.at("history").get<std::vector<double>>();
     }
-    r.links = solve.value("links", std::size_t{0});
-    r.splits = json.at("splits").get<std::size_t>();
+    r.links = solve.contains("links") ? whole_number_in<std::size_t>(solve.at("links")) : 0;
+    r.splits = whole_number_in<std::size_t>(json.at("splits"));
     r.lines = line_counts_in(json.at("lines"));
     r.energy = energy_in(json.at("energy"));
     r.exposure = json.at("exposure").get<double>();
@@ -225,11 +226,11 @@ StoredRecord run_record_in(const std::string& text)
         id.scene_file = scene.at("file").get<std::string>();
         id.scene_sha256 = scene.at("sha256").get<std::string>();
         id.content_sha256 = scene.at("content_sha256").get<std::string>();
-        id.surfaces = scene.at("surfaces").get<std::size_t>();
+        id.surfaces = whole_number_in<std::size_t>(scene.at("surfaces"));
         id.area = scene.at("area").get<double>();
         id.closed = scene.at("closed").get<bool>();
         id.options = json.at("options");
-        id.seed = json.at("seed").get<std::uint64_t>();
+        id.seed = whole_number_in<std::uint64_t>(json.at("seed"));
         stored.record.warnings = json.at("warnings").get<std::vector<std::string>>();
         for (const Json& cycle : json.at("cycles")) {
             stored.record.cycles.push_back(cycle_in(cycle));

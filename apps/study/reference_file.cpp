@@ -1,6 +1,7 @@
 #include "apps/study/reference_file.h"
 
 #include "apps/run/file_writer.h"
+#include "apps/run/whole_number.h"
 #include "meshing/scene_error.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ std::vector<ReferencePoint> points_in(const Json& rows)
         const auto three = [&](std::size_t k) {
             return Vec3(row.at(k).get<double>(), row.at(k + 1).get<double>(), row.at(k + 2).get<double>());
         };
-        points.push_back({{SurfaceId(row.at(0).get<std::size_t>()), three(1)}, three(4), three(7)});
+        points.push_back({{SurfaceId(whole_number_in<std::size_t>(row.at(0))), three(1)}, three(4), three(7)});
     }
     return points;
 }

@@ -58,8 +58,12 @@ def fuzz(name, program, core, options):
         kept.mkdir(parents=True, exist_ok=True)
         environment = dict(os.environ, TMPDIR=scratch, ASAN_OPTIONS="allocator_may_return_null=1",
                            UBSAN_OPTIONS="print_stacktrace=1")
-        command = [program, kept, CORPUS / name, f"-max_total_time={options.seconds}", f"-seed={options.seed}",
-                   "-rss_limit_mb=2048", f"-timeout={100 if options.repeatable else 10}", "-print_final_stats=1", f"-artifact_prefix={FOUND / name}-"]
+        # By name: a folder lists its files in another order on each machine, and then other inputs are made of them.
+        seeds = Path(scratch) / "seeds"
+        seeds.write_text(",".join(map(str, sorted((CORPUS / name).iterdir()))))
+        command = [program, kept, f"-seed_inputs=@{seeds}", f"-max_total_time={options.seconds}",
+                   f"-seed={options.seed}", "-rss_limit_mb=2048", f"-timeout={100 if options.repeatable else 10}",
+                   "-print_final_stats=1", f"-artifact_prefix={FOUND / name}-"]
         if options.repeatable:
             command.append(f"-runs={EXECUTIONS[name]}")
         if (WORDS / name).exists():
