@@ -181,9 +181,7 @@ double emitters_of(const Scene& scene)
     return std::min(most_emitters, static_cast<double>(std::ranges::count_if(scene.surfaces, emits)));
 }
 
-}  // namespace
-
-CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
+CostEstimate cost_of(const Scene& scene, const AdaptiveOptions& options, const SceneSizes& sizes)
 {
     const double elements = elements_of(scene, options);
     CostEstimate cost;
@@ -193,16 +191,23 @@ CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
     const double vertex_rays = options.gather.rays > 0 ? options.gather.rays : GatherOptions{}.rays;
     cost.rays = 0.25 * elements * (options.form_factors.rays + 4 * vertex_rays);
     // Saturated: more is refused anyway, and infinity times nothing would be allowed.
-    cost.bytes = solve_bytes(std::min(elements, 1e18), options, sizes_of(scene));
+    cost.bytes = solve_bytes(std::min(elements, 1e18), options, sizes);
     cost.cpu_seconds = seconds_per_ray * cost.rays + seconds_per_lit_element * elements * emitters_of(scene);
     return cost;
 }
 
-void check_memory(const Scene& scene, const AdaptiveOptions& options, double limit)
+}  // namespace
+
+CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options)
 {
-    const CostEstimate cost = estimate_cost(scene, options);
-    const double fitting =
-        fitting_elements(allowed_memory(limit), static_cast<double>(cost.elements), options, sizes_of(scene));
+    return cost_of(scene, options, sizes_of(scene));
+}
+
+CostEstimate check_memory(const Scene& scene, const AdaptiveOptions& options, double limit)
+{
+    const SceneSizes sizes = sizes_of(scene);
+    const CostEstimate cost = cost_of(scene, options, sizes);
+    const double fitting = fitting_elements(allowed_memory(limit), static_cast<double>(cost.elements), options, sizes);
     const bool dense = options.form_factors.method == FormFactorMethod::exact ||
                        options.form_factors.method == FormFactorMethod::quadrature;
     require_memory(
@@ -211,6 +216,7 @@ void check_memory(const Scene& scene, const AdaptiveOptions& options, double lim
                     dense ? ", or take --form-factors hemisphere, whose rows don't grow with the elements, or --solver "
                             "hierarchical"
                           : ", or for fewer --rays"));
+    return cost;
 }
 
 double uniform_elements(const Scene& scene, const MeshingOptions& meshing)

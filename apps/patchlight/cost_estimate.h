@@ -19,9 +19,9 @@ struct CostEstimate {
 
 CostEstimate estimate_cost(const Scene& scene, const AdaptiveOptions& options);
 
-/// Throws LimitError, with how many elements fit and what else to do, when a solve needs more than `limit` bytes;
-/// 0: default_memory().
-void check_memory(const Scene& scene, const AdaptiveOptions& options, double limit = 0);
+/// The same; throws LimitError, with how many elements fit and what else to do, when a solve needs more than `limit`
+/// bytes; 0: default_memory().
+CostEstimate check_memory(const Scene& scene, const AdaptiveOptions& options, double limit = 0);
 
 /// Triangles of the uniform mesh, roughly: those of `max_edge`, and no more than `max_elements`.
 double uniform_elements(const Scene& scene, const MeshingOptions& meshing);

@@ -1,6 +1,5 @@
 #include "apps/patchlight/kept_factors.h"
 
-#include "apps/patchlight/cost_estimate.h"
 #include "apps/patchlight/usage_error.h"
 #include "apps/run/stored_factors.h"
 #include "meshing/scene_error.h"
@@ -56,10 +55,9 @@ KeptRows factors_of_run(const SolveCommand& command, const Scene& scene, const R
     return {};
 }
 
-void check_factors_fit(const SolveCommand& command, const Scene& scene, const Session& session)
+void check_factors_fit(const SolveCommand& command, const CostEstimate& cost, const Session& session)
 {
     if (!command.keep_factors) return;
-    const CostEstimate cost = estimate_cost(scene, command.options);
     const double bytes = factors_bytes(static_cast<double>(cost.elements), command.options);
     require_memory(cost.bytes + 3 * bytes, command.memory,
                    "ask for fewer elements or rays, or leave out --keep-factors");

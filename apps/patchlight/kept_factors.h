@@ -2,6 +2,7 @@
 
 #include "apps/patchlight/arguments.h"
 #include "apps/patchlight/commands.h"
+#include "apps/patchlight/cost_estimate.h"
 #include "formfactor/ray_caster.h"
 
 namespace patchlight {
@@ -12,7 +13,8 @@ namespace patchlight {
 KeptRows factors_of_run(const SolveCommand& command, const Scene& scene, const RayCaster& caster,
                         const Session& session);
 
-/// What --keep-factors will write, told; throws LimitError where memory or disk haven't room for that.
-void check_factors_fit(const SolveCommand& command, const Scene& scene, const Session& session);
+/// What --keep-factors will write beside what the solve needs, told; throws LimitError where memory or disk haven't
+/// room for that.
+void check_factors_fit(const SolveCommand& command, const CostEstimate& cost, const Session& session);
 
 }  // namespace patchlight

@@ -112,8 +112,7 @@ int solve_planned(const PlannedSolve& plan, const SceneInput& input, const RayCa
 {
     const SolveCommand& command = plan.command;
     if (command.time > 0) session.interruption.stop_after(command.time);
-    check_memory(input.scene, command.options, command.memory);
-    check_factors_fit(command, input.scene, session);
+    check_factors_fit(command, check_memory(input.scene, command.options, command.memory), session);
     const std::vector<std::string> warnings = gather_warnings(input, caster, session);
     session.interruption.check();
 

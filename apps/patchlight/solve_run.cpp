@@ -155,7 +155,7 @@ void SolveRun::solve_from(const RunRecord& before)
     if (!before.cycles.empty()) {
         const CycleRecord& last = before.cycles.back();
         StoredSolution solution = stored(last.cycle);
-        if (scene_digest(solution.scene) != scene_digest(input_.scene)) {
+        if (scene_digest(solution.scene) != before.identity.content_sha256) {
             throw FolderRefused(
                 fmt::format("{}: its cycle {} is of another scene", folder_.path().string(), last.cycle));
         }

@@ -100,8 +100,7 @@ CostEstimate cost_of(SolveCommand& command, const Scene& scene)
         const std::size_t elements = mesh_of_run(command.mesh_of, scene).arrays.triangles.size();
         command.options.max_elements = command.options.meshing.max_elements = elements;
     }
-    check_memory(scene, command.options, command.memory);
-    return estimate_cost(scene, command.options);
+    return check_memory(scene, command.options, command.memory);
 }
 
 void add(CostEstimate& sum, const CostEstimate& cost)

@@ -1,5 +1,5 @@
-"""What the hardening of the release build costs: processor seconds of solves by the program and by one built without,
-in turn, in an order that a machine growing slower doesn't favour.
+"""What the hardening of the release build costs: processor seconds of solves by the program and by one built without
+(nor position-independent), in turn, in an order that a machine growing slower doesn't favour.
 
     python3 tests/benchmark/hardening_cost.py BUILD [--rounds 8]
 

@@ -2,7 +2,9 @@
 file left behind. Scenes that are only ugly are solved: energy in balance, no NaN, and any order of faces gives the same
 light. One line a row is printed.
 
-    python3 tests/reliability/hostile_input.py BUILD [-k WORD]
+    python3 tests/reliability/hostile_input.py [-k WORD]
+
+PATCHLIGHT_SOURCE and PATCHLIGHT_COMMAND name the sources and the command.
 """
 
 import argparse
@@ -17,11 +19,13 @@ import sys
 import tempfile
 from pathlib import Path
 
+import disturbed
+
 REFUSED_MIB, REFUSED_SECONDS = 50, 0.1  # what a lying file may take
 # A refusal is timed three times and the shortest counts: processor time, too, is longer beside other jobs.
 TRIES = 3
 
-SCENES = Path(__file__).resolve().parents[2] / "data/scenes"
+SCENES = disturbed.SOURCE / "data/scenes"
 
 MATERIALS = """newmtl white
 Kd .7 .7 .7
@@ -116,8 +120,8 @@ def ugly_scenes():
 
 
 class Rows:
-    def __init__(self, build, scratch, only):
-        self.command, self.scratch, self.only, self.bad = build / "patchlight", scratch, only, 0
+    def __init__(self, scratch, only):
+        self.command, self.scratch, self.only, self.bad = disturbed.COMMAND, scratch, only, 0
         self.folder = None
         self.rows = 0
 
@@ -426,11 +430,10 @@ def limited_time(rows):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("build", type=Path)
     parser.add_argument("-k", default="", help="only rows whose name has this in it")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="patchlight-hostile-") as scratch:
-        rows = Rows(options.build.resolve(), Path(scratch), options.k)
+        rows = Rows(Path(scratch), options.k)
         lying_files(rows)
         deep_files(rows)
         too_much(rows)

@@ -1,7 +1,9 @@
 """Light doesn't leak: twenty layouts of sealed rooms, a lamp in one of them. In the others the light must be 0, to the
 bit, by every kind of form factors and by links.
 
-    python3 tests/reliability/sealed_rooms.py BUILD [-k WORD]
+    python3 tests/reliability/sealed_rooms.py [-k WORD]
+
+PATCHLIGHT_SOURCE and PATCHLIGHT_COMMAND name the sources and the command.
 """
 
 import argparse
@@ -13,6 +15,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+import disturbed
 
 MATERIALS = """newmtl white
 Kd .8 .8 .8
@@ -136,10 +140,9 @@ def problem_of(command, scene, folder, points, lit_count, method):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("build", type=Path)
     parser.add_argument("-k", default="", help="only layouts whose name has this in it")
     options = parser.parse_args()
-    command, bad, began = options.build.resolve() / "patchlight", 0, time.monotonic()
+    command, bad, began = disturbed.COMMAND, 0, time.monotonic()
     chosen = [layout for layout in layouts() if options.k in layout[0]]
     with tempfile.TemporaryDirectory(prefix="patchlight-rooms-") as scratch:
         for number, (name, rooms, both, light, place) in enumerate(chosen):
