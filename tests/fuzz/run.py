@@ -5,13 +5,15 @@
 Builds build-fuzz in the sources' folder first where it is missing or old: clang++ is needed. Two targets run at once.
 A line a target says how many inputs were tried, how many of them reached something new, and how many edges of the
 program were reached. Inputs that crash a target, or take it 10 s or 2 GiB, are kept in build-fuzz/found; exit code 1.
---repeatable: the same inputs on every machine, no more of them than were once tried in that time, and 100 s for each: a
-test must not fail by what only a faster machine comes to. What is new is looked for without it, with another --seed.
+--repeatable: as nearly the same inputs on every machine as threads and names of temporary files allow, no more of them
+than were once tried in that time, and 100 s for each: a test must not fail by what only a faster machine comes to. What
+is new is looked for without it, with another --seed.
 --keep: what reached something new, beyond the corpus, is kept there and taken up again. Without clang++: exit code 77.
 """
 
 import argparse
 import concurrent.futures
+import ctypes
 import json
 import os
 import queue
@@ -27,6 +29,7 @@ BUILD = SOURCE / "build-fuzz"
 CORPUS = SOURCE / "tests" / "fuzz" / "corpus"
 WORDS = SOURCE / "tests" / "fuzz" / "words"
 FOUND = BUILD / "found"
+ADDR_NO_RANDOMIZE = 0x0040000  # linux/personality.h
 # By target, --repeatable: what two cores with nothing else to do try in 30 s.
 EXECUTIONS = {"checkpoint": 600, "configuration": 100_000, "gltf": 120_000, "mtl": 450_000, "obj": 70_000,
               "points": 600_000, "record": 80_000, "scene": 180, "solution": 40_000, "study": 120_000}
@@ -42,6 +45,12 @@ def build():
 def programs():
     """By the targets' names."""
     return {path.name: BUILD / "tests" / "fuzz" / f"fuzz_{path.name}" for path in sorted(CORPUS.iterdir())}
+
+
+def on_one_core(core):
+    os.sched_setaffinity(0, {core})
+    # Addresses, too, are compared, and what is compared goes into inputs. Containers may forbid it: then they differ.
+    ctypes.CDLL(None).personality(ADDR_NO_RANDOMIZE)
 
 
 def last_number(pattern, text):
@@ -65,12 +74,13 @@ def fuzz(name, program, core, options):
                    f"-seed={options.seed}", "-rss_limit_mb=2048", f"-timeout={100 if options.repeatable else 10}",
                    "-print_final_stats=1", f"-artifact_prefix={FOUND / name}-"]
         if options.repeatable:
-            command.append(f"-runs={EXECUTIONS[name]}")
+            # What it does each second, by the clock, changes which inputs are kept.
+            command += [f"-runs={EXECUTIONS[name]}", "-reload=0", "-purge_allocator_interval=-1"]
         if (WORDS / name).exists():
             command.append(f"-dict={WORDS / name}")
         done = subprocess.run(list(map(str, command)), env=environment, stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, errors="replace",
-                              preexec_fn=lambda: os.sched_setaffinity(0, {core}))
+                              preexec_fn=lambda: on_one_core(core))
         inputs = sum(1 for _ in kept.iterdir())
     said = done.stderr
     artifact = re.search(r"Test unit written to (\S+)", said)
