@@ -4,13 +4,15 @@ file may be left; and the same command without the fault must end with the very 
 
     python3 tests/reliability/faults.py [--every] [--demo] [--kinds write,memory]
 
---every: each call but allocations, of those a thousand; otherwise a choice of all. --demo: of the demo, not of a small
-solve.
+--every: each call but allocations, of those a thousand, or a hundred of the demo; otherwise a choice of all. --demo: of
+the demo, not of a small solve. A solve a core at once, each in a folder of its own.
 PATCHLIGHT_SOURCE and PATCHLIGHT_COMMAND name the sources and the command.
 """
 
 import argparse
+import concurrent.futures
 import os
+import queue
 import random
 import shutil
 import signal
@@ -23,7 +25,7 @@ import disturbed
 
 KINDS = ("write", "fsync", "rename", "mkdir", "memory")
 # Allocations chosen of some hundred thousand, and every which of the other calls: within a minute, or many.
-ALLOCATIONS, EVERY_ALLOCATIONS, STEP = 16, 1000, 10
+ALLOCATIONS, EVERY_ALLOCATIONS, EVERY_ALLOCATIONS_OF_DEMO, STEP = 16, 1000, 100, 10
 # What ends the program by itself without memory, and can't be kept from it: glibc, when a thread needs the variables of
 # a library that was loaded late, and GLib, which OpenImageIO brings along.
 LIBRARIES_END = {127: "thread-local data: ABORT", -signal.SIGTRAP: "GLib-ERROR"}
@@ -31,6 +33,7 @@ LIBRARIES_END = {127: "thread-local data: ABORT", -signal.SIGTRAP: "GLib-ERROR"}
 
 class Faults:
     def __init__(self, demo, scratch):
+        scratch.mkdir()
         self.library = scratch / "failing_calls.so"
         subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-o", self.library,
                         disturbed.SOURCE / "tests/reliability/failing_calls.c", "-ldl"], check=True)
@@ -88,6 +91,16 @@ class Faults:
         return None
 
 
+def places(kind, calls, options):
+    """Which calls are made to fail, and whether all after them, too."""
+    if kind == "memory":
+        wanted = (EVERY_ALLOCATIONS_OF_DEMO if options.demo else EVERY_ALLOCATIONS) if options.every else ALLOCATIONS
+        chosen = sorted(random.Random(1).sample(range(1, calls + 1), min(wanted, calls)))
+        return [(at, forever) for at in chosen for forever in ((False, True) if at % 2 else (False,))]
+    every = range(1, calls + 1)
+    return [(at, False) for at in (every if options.every else sorted({*every[::STEP], *every[-1:]}))]
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--every", action="store_true")
@@ -96,22 +109,27 @@ def main():
     options = parser.parse_args()
     bad = 0
     with tempfile.TemporaryDirectory(prefix="patchlight-faults-") as scratch:
-        faults = Faults(options.demo, Path(scratch))
-        for kind in options.kinds.split(","):
-            calls = faults.calls(kind)
-            places = list(range(1, calls + 1))
-            if kind == "memory":
-                wanted = EVERY_ALLOCATIONS if options.every else ALLOCATIONS
-                places = sorted(random.Random(1).sample(places, min(wanted, calls)))
-            elif not options.every:
-                places = places[::STEP] + places[-1:]
-            for at in places:
-                for forever in (False, True) if kind == "memory" and at % 2 else (False,):
-                    problem = faults.problem(kind, at, forever)
+        free = queue.SimpleQueue()
+        for core in range(os.cpu_count()):
+            free.put(Faults(options.demo, Path(scratch) / str(core)))
+
+        def with_one(work):
+            faults = free.get()
+            try:
+                return work(faults)
+            finally:
+                free.put(faults)
+
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            for kind in options.kinds.split(","):
+                calls = with_one(lambda faults: faults.calls(kind))
+                chosen = places(kind, calls, options)
+                found = pool.map(lambda place: with_one(lambda faults: faults.problem(kind, *place)), chosen)
+                for (at, forever), problem in zip(chosen, found):
                     if problem:
                         bad += 1
                         print(f"{kind} {at} of {calls}{' and all after' if forever else ''}: {problem}", flush=True)
-            print(f"{kind}: {len(places)} of {calls} calls made to fail", flush=True)
+                print(f"{kind}: {len({at for at, _ in chosen})} of {calls} calls made to fail", flush=True)
     sys.exit(bad > 0)
 
 

@@ -5,7 +5,9 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace patchlight {
@@ -84,10 +86,12 @@ ImageFile image_in(const std::filesystem::path& file)
     return result;
 }
 
-bool write_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& color, TextAlign align)
+/// On `rgb`, of `rows` rows of `width` pixels; where no font is found nothing.
+bool render(std::vector<float>& rgb, int width, int rows, int x, int y, const std::string& text, int size,
+            const Rgb& color, TextAlign align)
 {
     using OIIO::ImageBufAlgo::TextAlignX;
-    OIIO::ImageBuf canvas(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeFloat), image.rgb.data());
+    OIIO::ImageBuf canvas(OIIO::ImageSpec(width, rows, 3, OIIO::TypeFloat), rgb.data());
     const std::vector<float> ink{static_cast<float>(color.r), static_cast<float>(color.g), static_cast<float>(color.b)};
     const auto side = align == TextAlign::left     ? TextAlignX::Left
                       : align == TextAlign::center ? TextAlignX::Center
@@ -99,6 +103,24 @@ bool write_text(Image& image, int x, int y, const std::string& text, int size, c
         (void)canvas.geterror();
     }
     return false;
+}
+
+bool write_text(Image& image, int x, int y, const std::string& text, int size, const Rgb& color, TextAlign align)
+{
+    // The rows that letters on this line can reach.
+    const int first = std::clamp(y - 2 * size, 0, image.height), last = std::clamp(y + size, first, image.height);
+    if (first == last) return true;
+    const auto begin = image.rgb.begin() + (image.pixel(0, first) - image.rgb.data());
+    const std::vector<float> ground(begin, begin + std::ptrdiff_t{3} * image.width * (last - first));
+    std::vector<float> once = ground, again = ground;
+    const auto write = [&](std::vector<float>& rgb) {
+        return render(rgb, image.width, last - first, x, y - first, text, size, color, align);
+    };
+    const bool written = write(once);
+    // Letters that FreeType has no memory for are left out, and nobody says so: "3.16 %" would be "3.1 %".
+    if (write(again) != written || once != again) throw std::bad_alloc();
+    std::ranges::copy(once, begin);
+    return written;
 }
 
 ColorTable table_of(const std::string& name)
