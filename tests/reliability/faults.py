@@ -1,6 +1,7 @@
 """Fails one call after the other of a solve: write, fsync, rename, mkdir, an allocation. Each time the command must end
-with exit code 6 (5 for memory) and a message, not crash; what was finished before must be whole; no temporary
-file may be left; and the same command without the fault must end with the very files of an undisturbed run.
+with exit code 6 (5 for memory) and a message, not crash; what was finished before must be whole; no temporary file may
+be left; and the same command without the fault must end with the very files of an undisturbed run (of the demo, which
+takes seconds, after every tenth).
 
     python3 tests/reliability/faults.py [--every] [--demo] [--kinds write,memory]
 
@@ -26,6 +27,7 @@ import disturbed
 KINDS = ("write", "fsync", "rename", "mkdir", "memory")
 # Allocations chosen of some hundred thousand, and every which of the other calls: within a minute, or many.
 ALLOCATIONS, EVERY_ALLOCATIONS, EVERY_ALLOCATIONS_OF_DEMO, STEP = 16, 1000, 100, 10
+AFTERWARDS_OF_DEMO = 10
 # What ends the program by itself without memory, and can't be kept from it: glibc, when a thread needs the variables of
 # a library that was loaded late, and GLib, which OpenImageIO brings along.
 LIBRARIES_END = {127: "thread-local data: ABORT", -signal.SIGTRAP: "GLib-ERROR"}
@@ -34,6 +36,7 @@ LIBRARIES_END = {127: "thread-local data: ABORT", -signal.SIGTRAP: "GLib-ERROR"}
 class Faults:
     def __init__(self, demo, scratch):
         scratch.mkdir()
+        self.afterwards = AFTERWARDS_OF_DEMO if demo else 1
         self.library = scratch / "failing_calls.so"
         subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-o", self.library,
                         disturbed.SOURCE / "tests/reliability/failing_calls.c", "-ldl"], check=True)
@@ -68,7 +71,7 @@ class Faults:
         if ended.returncode == 0 and kind == "memory":
             return None if disturbed.digests(self.run) == self.expected else "ended with 0 and other files"
         if kind == "memory" and (words := LIBRARIES_END.get(ended.returncode)) and words in ended.stderr:
-            return self.problem_afterwards()
+            return self.problem_afterwards(at)
         if ended.returncode != wanted:
             return f"exit code {ended.returncode}, not {wanted}: {ended.stderr[-300:]}"
         if "error[" not in ended.stderr:
@@ -80,9 +83,11 @@ class Faults:
         # The fault may come behind the last file of the run itself.
         if disturbed.status(self.run) == "finished" and disturbed.digests(self.run) != self.expected:
             return "marked finished, and isn't what it would be"
-        return self.problem_afterwards()
+        return self.problem_afterwards(at)
 
-    def problem_afterwards(self):
+    def problem_afterwards(self, at):
+        if at % self.afterwards != 0:
+            return None
         ended = self.go()
         if ended.returncode != 0:
             return f"the same command afterwards: exit code {ended.returncode}: {ended.stderr[-300:]}"
