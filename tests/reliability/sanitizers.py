@@ -24,6 +24,7 @@ LEFT_OUT = {
     r"^python\.": "the interpreter isn't instrumented",
     r"^reliability\.": "they measure memory and seconds, limit them, or put libraries in front of the sanitizer's own",
     r"^fuzz\.": "an instrumented build of its own",
+    r"^readme\.": "its commands build and run the ordinary program",
     r"^study\.slurm$": "a cluster of its own, with the ordinary build's limits",
     r"^benchmark\.": "seconds are all they tell",
     r"a_needle_costs_little$|APictureOfTheUsualSizeTakesLessThanASecond$": "the same",
