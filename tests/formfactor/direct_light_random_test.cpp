@@ -29,8 +29,8 @@ struct Tally {
 
 // Both sides round at 1e-15 of the parts they add, and at 1e-16 over the distance to a blocker's edge. What a bent
 // facet hides isn't defined better than by its bend over the distance to it: there it decides which of two planes cuts
-// off a light that pierces the facet. Seen: 1.1e-15 in 498 planar scenes; in the others
-// twelve bends, 1.3e-8; 30 leave room for blockers nearer still.
+// off a light that pierces the facet. Seen: 1.1e-15 in 498 planar scenes; in the others twelve
+// bends, 1.3e-8; 30 leave room for blockers nearer still.
 void compare(const Scene& scene, std::uint64_t seed, Tally& tally)
 {
     const double bent = bend(scene), tolerance = 1e-9 + 30 * bent;

@@ -20,8 +20,8 @@ FOLDERS = ("meshing", "formfactor", "solver")
 def covered(build):
     """By file of ours: lines, and those reached."""
     done = subprocess.run(["gcovr", "--root", disturbed.SOURCE, "--json-summary", "-", "--object-directory", build,
-                           "--gcov-ignore-parse-errors", *(f"--filter={folder}/" for folder in FOLDERS), build], cwd=disturbed.SOURCE,
-                          capture_output=True, text=True, check=True)
+                           "--gcov-ignore-parse-errors", *(f"--filter={folder}/" for folder in FOLDERS), build],
+                          cwd=disturbed.SOURCE, capture_output=True, text=True, check=True)
     return {file["filename"]: (file["line_total"], file["line_covered"])
             for file in json.loads(done.stdout)["files"]}
 

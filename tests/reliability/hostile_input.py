@@ -2,9 +2,7 @@
 file left behind. Scenes that are only ugly are solved: energy in balance, no NaN, and any order of faces gives the same
 light. One line a row is printed.
 
-    python3 tests/reliability/hostile_input.py [-k WORD]
-
-PATCHLIGHT_SOURCE and PATCHLIGHT_COMMAND name the sources and the command.
+    python3 tests/reliability/hostile_input.py [-k WORD]    of PATCHLIGHT_COMMAND and PATCHLIGHT_SOURCE
 """
 
 import argparse
