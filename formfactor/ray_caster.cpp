@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -39,6 +40,34 @@ PlaneSide side_of(const Scene& scene, const SceneTriangle& triangle, SurfaceId s
             f(p[2].x - p[0].x), f(p[2].y - p[0].y), surface.value};
 }
 
+/// Embree takes twice a triangle's area below 1e-18 for nothing, and products of three lengths overflow or vanish: so
+/// its scenes are about a thousand across, whatever ours are. A power of two: exact, so that all hits stay what they
+/// are.
+float embree_scale(double diameter)
+{
+    return diameter > 0 ? std::ldexp(1.0F, 10 - std::ilogb(diameter)) : 1.0F;
+}
+
+/// Ray `from` of the batch, as ray k of the packet, of which the hit is not touched. A segment is scaled as a whole;
+/// what has no end has no length: its direction remains.
+template <typename Packet>
+void set_ray(Packet& packet, std::size_t k, const RayBatch& rays, std::size_t from, float scale)
+{
+    const float along = std::isinf(rays.reach[from]) ? 1.0F : scale;
+    packet.org_x[k] = scale * rays.ox[from];
+    packet.org_y[k] = scale * rays.oy[from];
+    packet.org_z[k] = scale * rays.oz[from];
+    packet.dir_x[k] = along * rays.dx[from];
+    packet.dir_y[k] = along * rays.dy[from];
+    packet.dir_z[k] = along * rays.dz[from];
+    packet.tnear[k] = 0;
+    packet.tfar[k] = rays.reach[from];
+    packet.time[k] = 0;
+    packet.mask[k] = ~0U;
+    packet.id[k] = 0;
+    packet.flags[k] = 0;
+}
+
 /// What a call of Embree failed at.
 [[noreturn]] void complain(RTCError error, const char* what)
 {
@@ -53,6 +82,7 @@ struct RayCaster::Impl {
     RTCScene scene = nullptr;
     std::vector<std::array<PlaneSide, 2>> sides;  // of each triangle: front, back
     std::string isa;
+    float scale = 1;  // from metres to Embree's own lengths
 
     ~Impl()
     {
@@ -93,6 +123,7 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
     impl_->scene = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+    impl_->scale = embree_scale(scene.diameter);
 
     RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -102,7 +133,7 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offs
     if (vertices == nullptr || triangles == nullptr) throw std::bad_alloc();
     for (std::size_t v = 0; v < scene.vertices.size(); ++v)
         for (int k = 0; k < 3; ++k)
-            vertices[3 * v + static_cast<std::size_t>(k)] = static_cast<float>(scene.vertices[v][k]);
+            vertices[3 * v + static_cast<std::size_t>(k)] = impl_->scale * static_cast<float>(scene.vertices[v][k]);
     impl_->sides.reserve(scene.triangles.size());
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
         const SceneTriangle& triangle = scene.triangles[t];
@@ -139,18 +170,7 @@ void RayCaster::closest(const RayBatch& rays, HitBatch& hits) const
     alignas(32) std::array<int, width> valid;
     for (std::size_t first = 0; first < n; first += width) {
         for (std::size_t k = 0; k < width; ++k) {
-            packet.ray.org_x[k] = rays.ox[first + k];
-            packet.ray.org_y[k] = rays.oy[first + k];
-            packet.ray.org_z[k] = rays.oz[first + k];
-            packet.ray.dir_x[k] = rays.dx[first + k];
-            packet.ray.dir_y[k] = rays.dy[first + k];
-            packet.ray.dir_z[k] = rays.dz[first + k];
-            packet.ray.tnear[k] = 0;
-            packet.ray.tfar[k] = rays.reach[first + k];
-            packet.ray.time[k] = 0;
-            packet.ray.mask[k] = ~0U;
-            packet.ray.id[k] = 0;
-            packet.ray.flags[k] = 0;
+            set_ray(packet.ray, k, rays, first + k, impl_->scale);
             packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
             valid[k] = first + k < n ? -1 : 0;
         }
@@ -185,18 +205,7 @@ void RayCaster::occluded(const RayBatch& rays, std::vector<std::uint8_t>& blocke
     alignas(32) std::array<int, width> valid;
     for (std::size_t first = 0; first < n; first += width) {
         for (std::size_t k = 0; k < width; ++k) {
-            packet.org_x[k] = rays.ox[first + k];
-            packet.org_y[k] = rays.oy[first + k];
-            packet.org_z[k] = rays.oz[first + k];
-            packet.dir_x[k] = rays.dx[first + k];
-            packet.dir_y[k] = rays.dy[first + k];
-            packet.dir_z[k] = rays.dz[first + k];
-            packet.tnear[k] = 0;
-            packet.tfar[k] = rays.reach[first + k];
-            packet.time[k] = 0;
-            packet.mask[k] = ~0U;
-            packet.id[k] = 0;
-            packet.flags[k] = 0;
+            set_ray(packet, k, rays, first + k, impl_->scale);
             valid[k] = first + k < n ? -1 : 0;
         }
         rtcOccluded8(valid.data(), impl_->scene, &context, &packet);

@@ -188,6 +188,38 @@ TEST(Solution, ScaleAndShiftDoNotMatter)
     EXPECT_LT(difference(solution, solve_adaptively(shifted, options)), 1e-3);
 }
 
+/// Radiosity has no length in it, and powers of two none to round: no decision may fall otherwise, no ray go elsewhere.
+TEST(Solution, PowersOfTwoInSizeChangeNoBit)
+{
+    SceneOptions sized = in_millimetres();
+    const Scene scene = read_scene(PATCHLIGHT_DATA "/scenes/cornell-box.obj", sized).scene;
+    const AdaptiveSolution solution = solve_adaptively(scene, quick(1500));
+    for (const int power : {-49, -20, 20, 49}) {
+        sized.unit = std::ldexp(1e-3, power);
+        const Scene other_scene = read_scene(PATCHLIGHT_DATA "/scenes/cornell-box.obj", sized).scene;
+        const AdaptiveSolution other = solve_adaptively(other_scene, quick(1500));
+        EXPECT_EQ(solution.mesh.arrays().triangles, other.mesh.arrays().triangles) << power;
+        EXPECT_EQ(solution.B, other.B) << power;
+        EXPECT_EQ(solution.vertex_B, other.vertex_B) << power;
+        EXPECT_EQ(std::ldexp(solution.error.total, power), other.error.total) << power;
+    }
+}
+
+TEST(Solution, PowersOfTwoInLightChangeNoOtherBit)
+{
+    Scene scene = lamp_cube(0.5);
+    const AdaptiveSolution solution = solve_adaptively(scene, quick(800));
+    for (const int power : {-60, 60}) {
+        Scene other_scene = scene;
+        for (Material& m : other_scene.materials) m.emission *= std::ldexp(1.0, power);
+        const AdaptiveSolution other = solve_adaptively(other_scene, quick(800));
+        EXPECT_EQ(solution.mesh.arrays().triangles, other.mesh.arrays().triangles) << power;
+        ASSERT_EQ(solution.vertex_B.size(), other.vertex_B.size()) << power;
+        for (std::size_t v = 0; v < other.vertex_B.size(); ++v)
+            EXPECT_EQ(std::ldexp(1.0, power) * solution.vertex_B[VertexId(v)], other.vertex_B[VertexId(v)]) << power;
+    }
+}
+
 bool same(const AdaptiveSolution& a, const AdaptiveSolution& b)
 {
     return a.B == b.B && a.vertex_B == b.vertex_B && a.error.eta == b.error.eta &&
