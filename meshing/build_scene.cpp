@@ -21,12 +21,27 @@ namespace patchlight {
 
 namespace {
 
+// Light is passed on in single precision: beyond these it would overflow, or vanish with what it leaves after a few
+// reflections.
+constexpr double least_exitance = 1e-20, largest_exitance = 1e20;  // W/m², of the brightest
+
 void require_light(const RawScene& raw, const PolygonSoup& soup, const SceneOptions& options)
 {
-    const bool lit = std::any_of(soup.faces.begin(), soup.faces.end(),
-                                 [&](const SoupFace& face) { return soup.materials[face.material.value].emits(); });
-    if (!lit && options.require_emitter) {
+    const auto brightness = [&](const SoupFace& face) {
+        const Rgb& E = soup.materials[face.material.value].emission;
+        return std::max({E.r, E.g, E.b});
+    };
+    const auto brightest = std::ranges::max_element(soup.faces, {}, brightness);
+    const double E = brightness(*brightest);
+    if (E == 0 && options.require_emitter) {
         throw SceneError("dark", fmt::format("{}: no emitter; set Ke or use --emitter MATERIAL=W", raw.file_name));
+    }
+    if (E != 0 && !(E >= least_exitance && E <= largest_exitance)) {
+        throw SceneError("material",
+                         fmt::format("{}: material {}: the brightest exitance of the scene is {:g} W/m2, but "
+                                     "{:g} … {:g} is what can be computed with; give light in another unit",
+                                     raw.file_name, soup.materials[brightest->material.value].name, E, least_exitance,
+                                     largest_exitance));
     }
 }
 

@@ -16,6 +16,8 @@ namespace patchlight {
 namespace {
 
 constexpr double needle_ratio = 1e5;
+// Products of eight lengths must neither overflow nor vanish, nor a length in single precision.
+constexpr double least_diameter = 1e-15, largest_diameter = 1e15;  // m
 
 auto as_tuple(const Vec3& v)
 {
@@ -192,12 +194,13 @@ PolygonSoup make_polygon_soup(const RawScene& raw, const SceneOptions& options, 
     const double resolution = raw.relative_precision * std::max({largest.x, largest.y, largest.z});
     soup.center = 0.5 * box.low + 0.5 * box.high;
     soup.diameter = glm::length(box.high - box.low);
-    // Products of lengths must neither overflow nor vanish.
-    if (!(soup.diameter < 1e100)) {
-        throw SceneError("nonfinite",
-                         fmt::format("{}: the scene is {} m across, which is too large", raw.file_name, soup.diameter));
+    if (!(soup.diameter > 0)) no_area();
+    if (!(soup.diameter >= least_diameter && soup.diameter <= largest_diameter)) {
+        throw SceneError("size",
+                         fmt::format("{}: the scene is {:.3g} m across, but {:g} … {:g} m is what can be computed "
+                                     "with; give its coordinates in another unit",
+                                     raw.file_name, soup.diameter, least_diameter, largest_diameter));
     }
-    if (!(soup.diameter > 1e-100)) no_area();
     // What the file's own precision can't tell apart must weld, too.
     soup.snap = std::max(options.snap * soup.diameter, 4 * resolution);
     report.snap_distance = soup.snap;

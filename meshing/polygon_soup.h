@@ -28,8 +28,8 @@ struct PolygonSoup {
 };
 
 /// Recentres, welds vertices within the snapping distance, drops faces without area and duplicates, and cuts
-/// faces that aren't planar into triangles. Throws SceneError("zeroarea") when no face is left, "nonfinite"
-/// when the scene is more than 1e100 m across.
+/// faces that aren't planar into triangles. Throws SceneError("zeroarea") when no face is left, "size"
+/// when the scene is less than 1e-15 or more than 1e15 m across.
 PolygonSoup make_polygon_soup(const RawScene& raw, const SceneOptions& options, SceneReport& report);
 
 }  // namespace patchlight

@@ -50,9 +50,14 @@ TEST_F(BadSceneTest, NumbersThatAreNone)
 {
     expect_refused(with("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "nonfinite", "nan.obj:2");
     expect_refused(with("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), "index", "index.obj:4");
-    with("rho.mtl", "newmtl white\nKd 1.5 1 1\nKe 1 1 1\n");
-    expect_refused(with("rho.obj", "mtllib rho.mtl\nusemtl white\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "material",
-                   "reflectance 1.5");
+    const std::string white = "mtllib white.mtl\nusemtl white\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    with("white.mtl", "newmtl white\nKd 1.5 1 1\nKe 1 1 1\n");
+    expect_refused(with("rho.obj", white), "material", "reflectance 1.5");
+    // Single precision would make other light of it, or none.
+    for (const std::string E : {"1e-40", "1e40"}) {
+        with("white.mtl", "newmtl white\nKd .5 .5 .5\nKe 0 0 " + E + "\n");
+        expect_refused(with("bright.obj", white), "material", "material white: the brightest exitance");
+    }
 }
 
 TEST_F(BadSceneTest, AMisspeltMaterialIsNamedAndTheOthersListed)

@@ -224,7 +224,7 @@ class Rows:
             return
         self.fresh()
         results = []
-        for unit, offset in ((1, (0, 0, 0)), (1e-6, (0, 0, 0)), (1e6, (0, 0, 0)), (1, (2e7, -1e7, 3e7))):
+        for unit, offset in (*((unit, (0, 0, 0)) for unit in (1, 1e-14, 1e-6, 1e6, 1e14)), (1, (2e7, -1e7, 3e7))):
             name = f"room-{len(results)}"
             points = self.write(name + ".csv", "x,y,z\n" + "".join(
                 ",".join(repr(unit * c + o) for c, o in zip((x, 0, z), offset)) + "\n"
@@ -261,8 +261,7 @@ TRIANGLE = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
 
 
 def lying_files(rows):
-    whole = obj(ROOM)
-    many = 4_000_000_000
+    whole, many = obj(ROOM), 4_000_000_000
     rows.refused("lying: 4e9 elements in 200 bytes", "big.glb",
                  glb(gltf(accessors=[{"bufferView": 0, "componentType": 5126, "count": many, "type": "VEC3"}]),
                      TRIANGLE), 3, ["big.glb", "accessor"])
@@ -279,8 +278,10 @@ def lying_files(rows):
     rows.refused("index past the end", "index.obj", whole + "f 1 2 4000000000\n", 3, ["error[index]", "index.obj:"])
     rows.refused("index 0", "index.obj", whole + "f 0 1 2\n", 3, ["error[index]", "index.obj:"])
     for text in ("nan", "inf", "-inf", "1e999"):
-        bad = whole.replace("v 0.0", f"v {text}", 1)
-        rows.refused(f"coordinate {text}", "number.obj", bad, 3, ["error[nonfinite]", "number.obj:2"])
+        rows.refused(f"coordinate {text}", "number.obj", whole.replace("v 0.0", f"v {text}", 1), 3,
+                     ["error[nonfinite]", "number.obj:2"])
+    for size in (1e-30, 1e30, 1e300):
+        rows.refused(f"a room of {size:g} m", "size.obj", obj(ROOM, size), 3, ["error[size]", "1e-15 … 1e+15 m"])
     rows.refused("no emitter", "dark.obj", whole.replace("usemtl lamp", "usemtl red"), 3,
                  ["error[dark]", "no emitter; set Ke or use --emitter MATERIAL=W"])
     for rho in ("1.5", "-0.1", "nan"):
@@ -437,7 +438,7 @@ def main():
         too_much(rows)
         for name, (faces, counter) in ugly_scenes().items():
             rows.ugly(name, faces, counter)
-        rows.scales("scale 1e-6 and 1e6, offset 1e7")
+        rows.scales("scale 1e-14, 1e-6, 1e6 and 1e14, offset 1e7")
         estimates(rows)
         limited_time(rows)
         little_memory(rows)
