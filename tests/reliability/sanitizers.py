@@ -18,7 +18,7 @@ from pathlib import Path
 
 import disturbed
 
-# What doesn't run under the address sanitizer, and why.
+# What doesn't run under sanitizers, and why.
 LEFT_OUT = {
     r"^package\.": "what is built on us would have to be linked with it, too",
     r"^python\.": "the interpreter isn't instrumented",
@@ -53,8 +53,10 @@ def configured_and_built(preset, targets):
 
 def run_tests(folder, jobs, environment, *choice):
     """How many tests ran, and the names of those that failed."""
+    # Sanitizers stand in for dlopen, which then looks for our module along their own path, not the program's.
+    environment = os.environ | environment | {"LD_LIBRARY_PATH": str(folder)}
     done = subprocess.run(["ctest", "--test-dir", folder, "-j", str(jobs), "--timeout", "3600", "--output-on-failure",
-                           *choice], env=os.environ | environment, stdout=subprocess.PIPE, text=True)
+                           *choice], env=environment, stdout=subprocess.PIPE, text=True)
     failed = re.findall(r"^\s*\d+ - (\S+) \((?!Skipped|Disabled)", done.stdout, re.M)
     ran = re.search(r"tests passed, \d+ tests failed out of (\d+)", done.stdout)
     if done.returncode != 0:
@@ -66,9 +68,7 @@ def check_memory(jobs):
     folder = configured_and_built("asan", [])
     # What is allocated once and kept until the end is no leak of ours: the libraries' own.
     environment = {"ASAN_OPTIONS": "detect_leaks=0:detect_stack_use_after_return=1:allocator_may_return_null=1",
-                   "UBSAN_OPTIONS": "print_stacktrace=1",
-                   # It stands in for dlopen, which then looks for our module along its own path, not the program's.
-                   "LD_LIBRARY_PATH": str(folder)}
+                   "UBSAN_OPTIONS": "print_stacktrace=1"}
     ran, failed = run_tests(folder, jobs, environment, "-LE", "^long$", "-E", "|".join(LEFT_OUT))
     print(f"address and undefined-behaviour sanitizers: {ran} tests, {len(failed)} with reports or failures "
           f"{' '.join(failed)}")
@@ -90,7 +90,7 @@ def check_threads(jobs):
     suppressions = disturbed.SOURCE / "tests/reliability/thread_sanitizer.supp"
     environment = {"TSAN_OPTIONS": f"suppressions={suppressions}:halt_on_error=1"}
     found = finds_a_race(folder)
-    ran, failed = run_tests(folder, jobs, environment, "-R", "^(" + "|".join(SUITES) + r")\.")
+    ran, failed = run_tests(folder, jobs, environment, "-R", "^(" + "|".join(SUITES) + r")\.", "-E", "|".join(LEFT_OUT))
     print(f"thread sanitizer: {ran} tests, {len(failed)} with reports or failures {' '.join(failed)}"
           f"{'' if found else '; it does not find the race that is there'}")
     return ran == 0 or bool(failed) or not found
