@@ -129,12 +129,14 @@ private:
             links_.gather(X_, H_);
             solution.check = check_links(exchange_, system_.rho, X_, H_, std::max(least_check, solution.rays / 8),
                                          options_.seed + static_cast<std::uint64_t>(again), {monitor_.stop, {}});
-            if (solution.check.at_least() <= options_.tolerance) break;
+            solution.imbalance = imbalance();
+            const bool sure = solution.check.at_least() > options_.tolerance;
+            if (!sure && solution.imbalance <= options_.tolerance) break;
             // More may be wrong than the links know: by as much their errors count for more.
-            trust_ *= options_.tolerance / solution.check.error;
+            trust_ *= options_.tolerance / std::max(sure ? solution.check.error : 0.0, solution.imbalance);
         }
         SolveReport& report = solution.report;
-        const double error = std::max(solution.link_error, solution.check.at_least());
+        const double error = std::max({solution.link_error, solution.check.at_least(), solution.imbalance});
         report.converged = report.converged && error <= options_.tolerance;
         report.residual = std::max(report.residual, error);
     }
@@ -192,6 +194,24 @@ private:
             report.converged = report.residual <= tolerance;
             if (report.converged) return;
         }
+    }
+
+    /// HierarchicalSolution::imbalance, less twice the standard error of what is lost; H_ is what links bring of X_.
+    double imbalance() const
+    {
+        constexpr std::size_t rays = 65536;
+        double sent = 0, arrived = 0, started = 0;
+        for (std::size_t i = 0; i < X_.size(); ++i) {
+            const PatchId p(i);
+            sent += system_.area[p] * sum(X_[p]);
+            arrived += system_.area[p] * sum(H_[p]);
+            started += system_.area[p] * sum(S_[p]);
+        }
+        if (!(started > 0)) return 0;
+        const LostLight found = lost_light(exchange_, X_, rays, options_.seed);
+        const double lost = found.escaped + found.backs, share = lost / sent;
+        const double noise = sent * std::sqrt((share * (1 - share) + 1.0 / rays) / rays);
+        return std::max(0.0, std::abs(sent - arrived - lost) - 2 * noise) / started;
     }
 
     /// From H of the last sweep: its X is what the patches sent out then, but for the linear solve's tolerance.

@@ -65,12 +65,13 @@ int report(const RunFolder& folder, const SolveCommand& command, const Session& 
         return 0;
     }
     const CycleRecord& last = record.cycles.back();
-    session.messages.error("converged",
-                           last.solver_converged
-                               ? fmt::format("the target error was not reached: {:.3g} % is left; raise --max-elements "
-                                             "or --iterations",
-                                             100 * last.estimated_error)
-                               : "the linear solver did not reach its tolerance");
+    session.messages.error(
+        "converged", last.solver_converged
+                         ? fmt::format("the target error was not reached: {:.3g} % is left; raise --max-elements "
+                                       "or --iterations",
+                                       100 * last.estimated_error)
+                         : "the linear solver did not reach its tolerance: light comes round too often for it; try "
+                           "--solver bicgstab or conjugate-gradient, or smaller reflectances");
     return 4;
 }
 

@@ -57,6 +57,24 @@ TEST_F(SolversTest, EachSolverTellsHowItWent)
     }
 }
 
+TEST_F(SolversTest, WhereLightComesRoundTooOftenForSweepsItSaysSoAndWhatHelps)
+{
+    std::filesystem::copy_file(PATCHLIGHT_DATA "/scenes/furnace.obj", folder_ / "bright.obj");
+    write_text(folder_ / "furnace.mtl", "newmtl furnace\nKd .999 .999 .999\nKe 1 1 1\n");
+    const auto solve = [&](const std::string& solver) {
+        return run({"solve", path("bright.obj"), "--max-reflectance", ".9995", "--refine", "none", "--pictures", "none",
+                    "--max-elements", "200", "--solver", solver, "-o", path(solver), "--json"});
+    };
+    const Outcome sweeps = solve("gauss-seidel");
+    EXPECT_EQ(sweeps.code, 4);
+    EXPECT_THAT(sweeps.err, AllOf(HasSubstr("error[converged]"), HasSubstr("--solver bicgstab")));
+    const Outcome helped = solve("bicgstab");
+    ASSERT_EQ(helped.code, 0) << helped.err;
+    const auto energy = nlohmann::json::parse(helped.out).at("cycles").at(0).at("energy");
+    // Rows are single precision: their sums are known to 1e-5 or so, of which light gets 1/(1 − ρ) times.
+    EXPECT_NEAR(energy.at("relative_residual").get<double>(), 0, 0.02);
+}
+
 // The adaptive mesh of one run, lit by two solvers: the same triangles, and the same light to what links may add.
 TEST_F(SolversTest, MethodsAreComparedOnOneMesh)
 {

@@ -118,6 +118,27 @@ TEST(Hierarchical, ConvergesToTheDenseAnswer)
     expect_convergence("Cornell box, all light on links", Room(read("cornell-box.obj", 1e-3), 600, false));
 }
 
+// A tenth of a percent that each exchange makes is a tenth of all where light comes round a hundred times.
+TEST(Hierarchical, InBrightRoomsTheToleranceHoldsForTheAnswerOrItSaysNo)
+{
+    for (const double rho : {0.9, 0.99, 0.999, 0.9999}) {
+        const Room room(
+            cube_inside({0, 0, 0, 0, 0, 0}, {{.name = "wall", .reflectance = Rgb(rho), .emission = Rgb(1 - rho)}}), 300,
+            false);
+        const Linked found = linked(room, 0.04);
+        double mean = 0, area = 0;
+        for (const PatchId p : room.mesh.patches()) {
+            mean += room.mesh.area(p) * found.B[p].g;
+            area += room.mesh.area(p);
+        }
+        std::printf("reflectance %.4f: B %.4f of 1, links %zu, %s\n", rho, mean / area, found.solution.report.links,
+                    found.solution.report.converged ? "converged" : "not converged");
+        // Every patch absorbs alike, so the mean is all that imbalance knows of; and a tenth is the linear solve's.
+        if (found.solution.report.converged) EXPECT_NEAR(mean / area, 1, 1.1 * 0.04) << rho;
+        if (rho < 0.995) EXPECT_TRUE(found.solution.report.converged) << rho;
+    }
+}
+
 // Boxes that touch, cross and hang: the mesh is cut along contact lines, nodes have patches of all shapes.
 TEST(Hierarchical, ConvergesToTheDenseAnswerAmongRandomBoxes)
 {
