@@ -48,10 +48,15 @@ float embree_scale(double diameter)
     return diameter > 0 ? std::ldexp(1.0F, 10 - std::ilogb(diameter)) : 1.0F;
 }
 
+/// Of Embree's own lengths, in which scenes are about a thousand across. From further away single precision doesn't
+/// know where a ray passes them, and Embree aborts at last.
+constexpr float farthest_origin = 1e9F;
+
 /// Ray `from` of the batch, as ray k of the packet, of which the hit is not touched. A segment is scaled as a whole;
-/// what has no end has no length: its direction remains.
+/// what has no end has no length: its direction remains. Returns what Embree takes for valid: -1, or 0 for a ray that
+/// it could make nothing of.
 template <typename Packet>
-void set_ray(Packet& packet, std::size_t k, const RayBatch& rays, std::size_t from, float scale)
+int set_ray(Packet& packet, std::size_t k, const RayBatch& rays, std::size_t from, float scale)
 {
     const float along = std::isinf(rays.reach[from]) ? 1.0F : scale;
     packet.org_x[k] = scale * rays.ox[from];
@@ -66,6 +71,10 @@ void set_ray(Packet& packet, std::size_t k, const RayBatch& rays, std::size_t fr
     packet.mask[k] = ~0U;
     packet.id[k] = 0;
     packet.flags[k] = 0;
+    // Neither holds of what is not a number.
+    const float away = std::abs(packet.org_x[k]) + std::abs(packet.org_y[k]) + std::abs(packet.org_z[k]);
+    const float length = std::abs(packet.dir_x[k]) + std::abs(packet.dir_y[k]) + std::abs(packet.dir_z[k]);
+    return away <= farthest_origin && length <= std::numeric_limits<float>::max() ? -1 : 0;
 }
 
 /// What a call of Embree failed at.
@@ -170,9 +179,8 @@ void RayCaster::closest(const RayBatch& rays, HitBatch& hits) const
     alignas(32) std::array<int, width> valid;
     for (std::size_t first = 0; first < n; first += width) {
         for (std::size_t k = 0; k < width; ++k) {
-            set_ray(packet.ray, k, rays, first + k, impl_->scale);
+            valid[k] = first + k < n ? set_ray(packet.ray, k, rays, first + k, impl_->scale) : 0;
             packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-            valid[k] = first + k < n ? -1 : 0;
         }
         rtcIntersect8(valid.data(), impl_->scene, &context, &packet);
         for (std::size_t k = 0; k < width && first + k < n; ++k) {
@@ -205,8 +213,7 @@ void RayCaster::occluded(const RayBatch& rays, std::vector<std::uint8_t>& blocke
     alignas(32) std::array<int, width> valid;
     for (std::size_t first = 0; first < n; first += width) {
         for (std::size_t k = 0; k < width; ++k) {
-            set_ray(packet, k, rays, first + k, impl_->scale);
-            valid[k] = first + k < n ? -1 : 0;
+            valid[k] = first + k < n ? set_ray(packet, k, rays, first + k, impl_->scale) : 0;
         }
         rtcOccluded8(valid.data(), impl_->scene, &context, &packet);
         for (std::size_t k = 0; k < width && first + k < n; ++k) blocked[first + k] = packet.tfar[k] < 0 ? 1 : 0;

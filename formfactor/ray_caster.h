@@ -38,7 +38,8 @@ struct HitBatch {
 
 /// Visibility among the surfaces of a scene, by Embree: one BVH over the scene's triangles (the input polygons,
 /// never the patches), built once, ROBUST. All queries may be made from many threads at once, and answer the
-/// same whatever the number of threads. Single precision inside.
+/// same whatever the number of threads. Single precision inside: what comes from more than about a million of the
+/// scene's diameters away, or isn't finite, meets nothing.
 class RayCaster {
 public:
     explicit RayCaster(const Scene& scene);
