@@ -134,6 +134,18 @@ TEST_F(StoredRunTest, RendersAnyView)
     EXPECT_FALSE(std::filesystem::exists(path("b.png")));
 }
 
+// Where single precision, and Embree with it, gives up; scene files bring cameras, too.
+TEST_F(StoredRunTest, FromTooFarAwayNothingIsSeen)
+{
+    for (const std::string away : {"1e18,1,1", "1e38,1e38,1e38", "-1e300,0,0"}) {
+        const Outcome outcome = run({"render", path("run"), "-o", path("far.png"), "--size", "40x30", "--wireframe",
+                                     "--from", away, "--to", "1,1,1"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const Image image = read_image(path("far.png")).image;
+        EXPECT_EQ(*std::max_element(image.rgb.begin(), image.rgb.end()), 0.0F) << away;
+    }
+}
+
 TEST_F(StoredRunTest, ExportsItsFormats)
 {
     ASSERT_EQ(run({"export", path("run"), "--format", "glb", "-o", path("a.glb")}).code, 0);
