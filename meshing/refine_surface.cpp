@@ -46,7 +46,7 @@ public:
         while (!work_.empty()) {
             const FaceHandle face = work_.front();
             work_.pop_front();
-            while (too_long(face)) insert_circumcentre(face, 0);
+            shorten(face);
             while (left > 0 && too_sharp(face) && insert_circumcentre(face, shortest_edge(face))) --left;
         }
     }
@@ -87,6 +87,8 @@ public:
 
 private:
     static constexpr std::uint8_t no_line = 0xff;
+    static constexpr int most_tries = 1000;
+    static constexpr double least_share = 1e-3;  ///< of a face's longest edge: what is split on its behalf
 
     std::uint8_t& kind(EdgeHandle edge) { return kinds_[static_cast<std::size_t>(edge.idx())]; }
     std::uint8_t kind(EdgeHandle edge) const { return kinds_[static_cast<std::size_t>(edge.idx())]; }
@@ -157,7 +159,19 @@ private:
         while (!work_.empty()) {
             const FaceHandle face = work_.front();
             work_.pop_front();
-            while (too_long(face)) insert_circumcentre(face, 0);
+            shorten(face);
+        }
+    }
+
+    /// By circumcentres, which make good triangles; by halving its longest edge where they don't help it, so that it
+    /// ends whatever rounding does.
+    void shorten(FaceHandle face)
+    {
+        for (int tries = 0; too_long(face); ++tries) {
+            if (tries < most_tries)
+                insert_circumcentre(face, 0);
+            else
+                split_edge(longest(face));
         }
     }
 
@@ -180,6 +194,8 @@ private:
         auto [target, blocking] = walk(face, centre);
         if (!blocking.is_valid()) blocking = encroached(target, centre);
         if (blocking.is_valid()) {
+            // Slivers along a border ask for halves of ever the same piece of it, and would not get shorter themselves.
+            if (length2(blocking) < least_share * least_share * length2(longest(face))) blocking = longest(face);
             if (!may_split(blocking, no_shorter)) return false;
             split_edge(blocking);
             return true;
@@ -250,13 +266,15 @@ private:
         return std::abs(u.x * v.y - u.y * v.x) / std::sqrt(glm::dot(u, u) * glm::dot(v, v));
     }
 
-    /// The face that contains q, or the border edge that stops the way to it.
+    /// The face that contains q, or the border edge that stops the way to it. Should rounding lead the way round a
+    /// corner for ever, the longest edge of the face that it began in: halving that one always helps.
     std::pair<FaceHandle, HalfedgeHandle> walk(FaceHandle face, const Vec2& q) const
     {
         const auto c = corners(face);
         const Vec2 start = (at(c[0]) + at(c[1]) + at(c[2])) / 3.0;
+        const HalfedgeHandle last_resort = longest(face);
         HalfedgeHandle entered;
-        for (;;) {
+        for (std::size_t steps = 0; steps < mesh_.n_faces(); ++steps) {
             HalfedgeHandle way_out;
             double best = -std::numeric_limits<double>::infinity();
             for (const auto h : mesh_.fh_range(face)) {
@@ -273,6 +291,7 @@ private:
             entered = mesh_.opposite_halfedge_handle(way_out);
             face = mesh_.face_handle(entered);
         }
+        return {face, last_resort};
     }
 
     void split_edge(HalfedgeHandle h)

@@ -92,9 +92,11 @@ std::string damaged(std::string bytes, Choices& choices)
     for (int change = 0; change < 16 && choices.any_left(); ++change) {
         const std::size_t at = choices.number(3) % (bytes.size() + 1);
         switch (choices.below(4)) {
-        case 0:
-            bytes.replace(at, choices.below(9), choices.text(choices.below(9)));
+        case 0: {
+            const std::size_t removed = choices.below(9), put_in = choices.below(9);
+            bytes.replace(at, removed, choices.text(put_in));
             break;
+        }
         case 1:
             bytes.erase(at, choices.below(64));
             break;

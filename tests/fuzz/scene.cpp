@@ -87,7 +87,7 @@ private:
     /// Fronts outside, or, of a room, inside.
     void box(bool room, std::size_t material)
     {
-        const Vec3 low(length(), length(), length()), size(length(), length(), length());
+        const Vec3 low{length(), length(), length()}, size{length(), length(), length()};  // braces: in this order
         const auto corner = [&](std::size_t k) {
             const auto bit = [&](std::size_t n) { return static_cast<double>((k >> n) & 1U); };
             return low + size * Vec3(bit(0), bit(1), bit(2));
@@ -131,9 +131,11 @@ private:
             break;
         }
         case 2:
-        case 3:
-            face(flat(3 + choices_.below(6), axis, length()), material);
+        case 3: {
+            const std::size_t corners = 3 + choices_.below(6);
+            face(flat(corners, axis, length()), material);
             break;
+        }
         case 4: {
             std::vector<Vec3> corners(3 + choices_.below(3));
             for (Vec3& p : corners) p = {length(), length(), length()};

@@ -114,6 +114,26 @@ TEST(Triangulate, a_needle_costs_little)
     }
 }
 
+// Found by fuzzing: a sliver between two borders, of which one was halved for ever and the sliver never got shorter.
+TEST(Triangulate, slivers_along_a_border_end)
+{
+    const double a = 1.4858, b = 1.48580003, c = 2.9716, e = 3e-8;
+    const LoadedScene loaded = load({{{{a, a, a}, {a, a, e}, {a, e, e}, {a, e, e}, {a, e, e}}, "lamp"},
+                                     {{{b, e, a}, {b, b, a}, {b, b, c}, {b, e, c}}},
+                                     {{{b, b, a}, {e, b, a}, {e, b, c}, {b, b, c}}}});
+    for (const MeshingOptions& options : {MeshingOptions{}, {.max_elements = 6}, {.max_edge = 0.1}}) {
+        PatchMesh mesh;
+        EXPECT_LT(seconds([&] { mesh = triangulate(loaded.scene, options); }), 2);
+        EXPECT_LT(mesh.patch_count(), 8000U);
+        for (std::size_t k = 0; k < loaded.scene.surfaces.size(); ++k) {
+            double area = 0;
+            for (const PatchId p : mesh.patches_of(SurfaceId(k))) area += mesh.area(p);
+            // The sliver is narrower than what snapping may move its borders by.
+            EXPECT_NEAR(area, loaded.scene.surfaces[k].area, loaded.report.snap_distance * loaded.scene.diameter);
+        }
+    }
+}
+
 TEST(Triangulate, as_many_elements_as_were_asked_for)
 {
     const Scene cube = grey_cube(), cornell = cornell_box();
