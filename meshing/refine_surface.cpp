@@ -167,12 +167,8 @@ private:
     /// ends whatever rounding does.
     void shorten(FaceHandle face)
     {
-        for (int tries = 0; too_long(face); ++tries) {
-            if (tries < most_tries)
-                insert_circumcentre(face, 0);
-            else
-                split_edge(longest(face));
-        }
+        for (int tries = 0; tries < most_tries && too_long(face); ++tries) insert_circumcentre(face, 0);
+        while (too_long(face)) split_edge(longest(face));
     }
 
     double shortest_edge(FaceHandle face) const
