@@ -2,9 +2,11 @@
 
 #include "formfactor/facet_points.h"
 #include "formfactor/random_numbers.h"
+#include "meshing/positive_part.h"
 
 #include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -55,9 +57,13 @@ std::vector<Polygon> cut_along_contacts(const std::array<Vec3, 3>& patch, const 
     return pieces;
 }
 
-/// The share of cosine-weighted rays from a piece that meet backs.
-double share_of_backs(const RayCaster& caster, const FacetPoints& piece, const PlaneFrame& frame, std::size_t count,
-                      RandomNumbers& random, Scratch& scratch)
+struct Shares {
+    double backs = 0, escaped = 0;
+};
+
+/// The shares of cosine-weighted rays from a piece that meet backs, and that meet nothing.
+Shares lost_shares(const RayCaster& caster, const FacetPoints& piece, const PlaneFrame& frame, std::size_t count,
+                   RandomNumbers& random, Scratch& scratch)
 {
     scratch.rays.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
@@ -68,9 +74,10 @@ double share_of_backs(const RayCaster& caster, const FacetPoints& piece, const P
     }
     caster.closest(scratch.rays, scratch.hits);
     scratch.traced += count;
-    std::size_t backs = 0;
-    for (std::size_t k = 0; k < count; ++k) backs += scratch.hits.surface[k] == HitBatch::black_back ? 1 : 0;
-    return static_cast<double>(backs) / static_cast<double>(count);
+    const auto share = [&](std::uint32_t what) {
+        return static_cast<double>(std::ranges::count(scratch.hits.surface, what)) / static_cast<double>(count);
+    };
+    return {share(HitBatch::black_back), share(HitBatch::escaped)};
 }
 
 }  // namespace
@@ -89,15 +96,19 @@ void add_backs(const Scene& scene, const RayCaster& caster, const PatchMesh& mes
             const PlaneFrame& frame = scene.surface(mesh.surface(p)).frame;
             RandomNumbers random(seed, stream ^ p.value);
             double sum = 0;
+            bool looks_out = false;
             for (const Polygon& piece : cut_along_contacts(
                      {mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])}, frame.n, blockers)) {
                 if (!(glm::length(area_vector(piece)) > 1e-12 * mesh.area(p))) continue;
                 const FacetPoints points{std::span<const Vec3>(piece)};
-                double share = share_of_backs(caster, points, frame, few_rays, random, scratch);
-                if (share > 0 && share < 1) share = share_of_backs(caster, points, frame, many_rays, random, scratch);
-                sum += share * points.area();
+                Shares shares = lost_shares(caster, points, frame, few_rays, random, scratch);
+                if (shares.backs > 0 && shares.backs < 1)
+                    shares = lost_shares(caster, points, frame, many_rays, random, scratch);
+                sum += shares.backs * points.area();
+                looks_out = looks_out || shares.escaped > 0;
             }
             F.backs[p] = sum / mesh.area(p);
+            if (looks_out) F.escaped[p] = positive_part(1 - F.raw_sum[p] - F.backs[p]);
         },
         1);
 }

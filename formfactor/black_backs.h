@@ -11,7 +11,9 @@ namespace patchlight {
 /// is cut along the contacts on it, the edges of blockers that lie in its plane; in each piece a few rays tell whether
 /// it is open (no ray meets a back) or covered (all do, as under a standing block), and its area counts exactly; where
 /// rays disagree, as beside an open sheet, the share of 1,024 rays is taken. Other rows keep 0.
-/// Meant for closed scenes, where nothing else can be missing. Throws Interrupted.
+/// Meant for closed scenes, where nothing else can be missing, but for patches that no lamp shines on and that look out
+/// of what is closed, as the outside of a room with walls: what is left of their rows escapes (F.escaped). Throws
+/// Interrupted.
 void add_backs(const Scene& scene, const RayCaster& caster, const PatchMesh& mesh, const Blockers& blockers,
                double least, std::uint64_t seed, FormFactorMatrix& F, const WorkMonitor& monitor);
 

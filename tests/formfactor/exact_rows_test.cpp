@@ -1,6 +1,7 @@
 #include "formfactor/exact_rows.h"
 
 #include "boxes.h"
+#include "formfactor/form_factor_matrix.h"
 #include "formfactor/pair_factor.h"
 #include "formfactor/random_numbers.h"
 #include "meshing/read_scene.h"
@@ -193,6 +194,34 @@ TEST(ExactRows, SealedRoomsExchangeNothing)
         for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k)
             ASSERT_EQ(mesh.surface(PatchId(i)).value < first, mesh.surface(PatchId(F.columns[k])).value < first);
     EXPECT_LE(closure(F).worst, 1e-5);
+}
+
+// Found by fuzzing: a closed room whose walls have an outside. No light gets there, but rows sum to 1 there, too.
+TEST(ExactRows, OutsidesOfClosedRoomsLookOut)
+{
+    Scene scene = cube();
+    const std::size_t first = scene.surfaces.size();
+    for (std::size_t s = 0; s < first; ++s) {
+        std::vector<Vec3> corners;
+        for (const std::uint32_t v : scene.surfaces[s].loops[0]) corners.push_back(1.2 * scene.vertices[v]);
+        std::ranges::reverse(corners);
+        testing::add_surface(scene, corners, 0);
+    }
+    const RayCaster caster(scene);
+    const PatchMesh mesh = mesh_of(scene, 300);
+    const PatchLocator locator(mesh);
+    for (const FormFactorMethod method : {FormFactorMethod::exact, FormFactorMethod::quadrature}) {
+        FormFactorOptions options;
+        options.method = method;
+        const FormFactorMatrix F = form_factor_matrix(scene, caster, mesh, locator, options, {});
+        for (const PatchId p : mesh.patches()) {
+            const bool outside = mesh.surface(p).value >= first;
+            EXPECT_EQ(F.escaped[p], outside ? 1 : 0);
+            EXPECT_EQ(F.backs[p], 0);
+            // Of quadrature, by its default tolerance of 1e-3.
+            EXPECT_NEAR(F.raw_sum[p], outside ? 0 : 1, 2e-3);
+        }
+    }
 }
 
 TEST(ExactRows, ScaleDoesNotMatter)
