@@ -77,7 +77,7 @@ void SpaceRegions::add_to_shell(std::uint32_t triangle, bool front)
     const auto [entry, is_new] = shells_.try_emplace(shell(triangle, front));
     Shell& shell = entry->second;
     if (is_new) {
-        shell.base = shell.outermost = vertices_[v[0]];
+        shell.base = vertices_[v[0]];
         shell.box = {shell.base, shell.base};
     }
     const Vec3 a = vertices_[v[0]] - shell.base, b = vertices_[v[1]] - shell.base, c = vertices_[v[2]] - shell.base;
@@ -85,11 +85,19 @@ void SpaceRegions::add_to_shell(std::uint32_t triangle, bool front)
     shell.volume += front ? -term : term;
     shell.magnitude += std::abs(term);
     for (const std::uint32_t corner : v) {
-        const Vec3& p = vertices_[corner];
-        if (glm::dot(p, outward) > glm::dot(shell.outermost, outward)) shell.outermost = p;
-        shell.box.low = glm::min(shell.box.low, p);
-        shell.box.high = glm::max(shell.box.high, p);
+        shell.box.low = glm::min(shell.box.low, vertices_[corner]);
+        shell.box.high = glm::max(shell.box.high, vertices_[corner]);
     }
+    const Vec3 middle = (vertices_[v[0]] + vertices_[v[1]] + vertices_[v[2]]) / 3.0;
+    if (runs_along_normal(triangle) == front && (!shell.start || glm::dot(middle - *shell.start, outward) > 0))
+        shell.start = middle;
+}
+
+bool SpaceRegions::runs_along_normal(std::uint32_t triangle) const
+{
+    const Triangle& v = triangles_[triangle];
+    const Vec3& a = vertices_[v[0]];
+    return glm::dot(glm::cross(vertices_[v[1]] - a, vertices_[v[2]] - a), outward) > 0;
 }
 
 /// Where a ray from `p` along `outward` meets the triangle, in metres.
@@ -108,24 +116,24 @@ std::optional<double> SpaceRegions::hit(const Triangle& triangle, const Vec3& p)
     return glm::dot(f, r) / determinant;
 }
 
-/// The shell that the ray from this shell's outermost vertex meets.
+/// The shell that the ray from this shell's outermost triangle meets once it has left the shell itself for good. Not
+/// from a vertex: what touches others, touches them there.
 std::optional<std::uint32_t> SpaceRegions::beyond(std::uint32_t shell)
 {
-    const Vec3 start = shells_.at(shell).outermost;
+    const std::optional<Vec3>& start = shells_.at(shell).start;
+    if (!start) return {};
     const double least = 1e-9 * diameter_;
-    std::optional<double> nearest;
-    std::uint32_t met = 0;
+    std::vector<std::pair<double, std::uint32_t>> met;
     tests_ += static_cast<double>(triangles_.size());
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-        const auto distance = hit(triangles_[t], start);
-        if (!distance || *distance <= least || (nearest && *distance >= *nearest)) continue;
-        nearest = distance;
-        const Triangle& v = triangles_[t];
-        const Vec3& a = vertices_[v[0]];
-        met = side_of(t, glm::dot(glm::cross(vertices_[v[1]] - a, vertices_[v[2]] - a), outward) < 0);
-    }
-    if (!nearest) return {};
-    return sides_.root(met);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+        if (const auto distance = hit(triangles_[t], *start); distance && *distance > least)
+            met.emplace_back(*distance, t);
+    std::sort(met.begin(), met.end());
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < met.size(); ++k)
+        if (sides_.root(side_of(met[k].second, runs_along_normal(met[k].second))) == shell) left = k + 1;
+    if (left == met.size()) return {};
+    return sides_.root(side_of(met[left].second, !runs_along_normal(met[left].second)));
 }
 
 bool SpaceRegions::closes(std::uint32_t shell) const

@@ -15,7 +15,7 @@ namespace patchlight {
 /// The regions of space that triangles with shared vertices bound. Triangle sides that meet at shared edges, going
 /// round the edge, bound the same region: they are one shell. A shell that bounds a volume from outside closes its
 /// region; one that doesn't (a plate in the air, a free block) lies in the region that a ray from its outermost
-/// vertex meets. Of very many free pieces (more than 5e8 / triangles) the last count as lying in open space.
+/// triangle meets. Of very many free pieces (more than 5e8 / triangles) the last count as lying in open space.
 class SpaceRegions {
 public:
     /// The vertices must live as long as the regions.
@@ -45,7 +45,7 @@ private:
         double volume = 0;     ///< that its sides face, six times; negative when they face outward
         double magnitude = 0;  ///< of the terms that volume sums
         Vec3 base{0.0};
-        Vec3 outermost{0.0};
+        std::optional<Vec3> start;  ///< the middle of its outermost triangle from where `outward` leads off it
         Box3 box;
     };
 
@@ -56,6 +56,7 @@ private:
 
     void join_sides();
     void add_to_shell(std::uint32_t triangle, bool front);
+    bool runs_along_normal(std::uint32_t triangle) const;  // the ray `outward`
     std::optional<double> hit(const Triangle& triangle, const Vec3& p) const;
     std::optional<std::uint32_t> beyond(std::uint32_t shell);
 

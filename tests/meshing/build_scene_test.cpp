@@ -130,6 +130,16 @@ TEST(BuildScene, faces_without_area_and_duplicates_are_dropped_and_counted)
     EXPECT_EQ(loaded.scene.surfaces.size(), 7U);
 }
 
+// Found by fuzzing: beyond the corner where it touches there is the inside of the block.
+TEST(BuildScene, a_lamp_that_touches_a_block_from_outside_is_in_the_open)
+{
+    const Polygon lamp{{{1, 1, 1}, {0, 0.5, 1}, {0.5, 0, 1}}, "lamp", "lamp"};
+    EXPECT_FALSE(load(with(box({1, 1, 0}, {1, 1, 2}, false), lamp)).scene.closed);
+    EXPECT_FALSE(load(with(box({1, 1, 0}, {1, 1, 2}, true), lamp)).scene.closed);
+    const Polygon inside{{{2, 2, 1}, {1.2, 1.5, 1}, {1.5, 1.2, 1}}, "lamp", "lamp"};
+    EXPECT_TRUE(load(with(box({1, 1, 0}, {1, 1, 2}, true), inside)).scene.closed);
+}
+
 TEST(BuildScene, needles_stay_and_are_counted)
 {
     const LoadedScene loaded =
