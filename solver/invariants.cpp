@@ -74,14 +74,14 @@ void check_light(const PatchField<Rgb>& E, const Radiosity& B, std::vector<Broke
     for (const Law* law : {&negative, &not_finite, &below}) law->report_to(broken);
 }
 
-void check_factors(const FormFactorMatrix& F, std::vector<BrokenInvariant>& broken)
+void check_factors(const FormFactorMatrix& F, double above_one, std::vector<BrokenInvariant>& broken)
 {
     Law not_finite("a factor is not finite"), outside("a factor is outside [0, 1]");
     for (std::size_t i = 0; i < F.size(); ++i)
         for (std::size_t k = F.row_start[i]; k < F.row_start[i + 1]; ++k) {
             const double f = F.factors[k];
             if (std::isfinite(f))
-                outside.hold(std::max(-f, f - 1 - rounding), f, PatchId(i), PatchId(F.columns[k]));
+                outside.hold(std::max(-f, f - 1 - above_one), f, PatchId(i), PatchId(F.columns[k]));
             else
                 not_finite.hold(infinite, f, PatchId(i), PatchId(F.columns[k]));
         }
@@ -179,7 +179,8 @@ InvariantTolerances invariant_tolerances(const AdaptiveOptions& options)
     } else if (method == FormFactorMethod::hemicube) {
         // The rule that weighs pixels by their middles is off by 0.54/resolution². All of a row is seen from one point:
         // what that is off by for a patch's neighbours is for the mesh to say.
-        t.row_sum += 1.0 / (static_cast<double>(options.form_factors.resolution) * options.form_factors.resolution);
+        t.factor = 1.0 / (static_cast<double>(options.form_factors.resolution) * options.form_factors.resolution);
+        t.row_sum += t.factor;
         t.energy = 0.5;
     }
     if (method == FormFactorMethod::exact || method == FormFactorMethod::quadrature) {
@@ -206,7 +207,7 @@ std::vector<BrokenInvariant> broken_invariants(const RadiositySystem& system, co
     }
     area.report_to(broken);
     check_light(system.E, B, broken);
-    check_factors(system.F, broken);
+    check_factors(system.F, tolerances.factor, broken);
     // What follows would only say the same again.
     if (!broken.empty()) return broken;
     check_rows(system, closed, tolerances, broken);

@@ -13,6 +13,7 @@ namespace patchlight {
 /// How far from its invariants a method may be: what it promises, with room for meshes as coarse as can be asked for.
 struct InvariantTolerances {
     double row_sum = 1e-4;  ///< |Σ_j F_ij + backs + escaped − 1| of any row; single precision and swapped sources
+    double factor = 1e-6;   ///< F_ij − 1 of any factor
     double closure = 1e-3;  ///< of all light in a closed scene, what escapes
     double reciprocity = std::numeric_limits<double>::infinity();  ///< as ReciprocityDefect; not promised: infinite
     double energy = 0.02;  ///< of all light that is exchanged, what is made or lost, beside the noise of sampled rows

@@ -160,6 +160,9 @@ TEST(Invariants, MethodsAreHeldToTheirPromises)
     options.form_factors.method = FormFactorMethod::exact;
     EXPECT_LT(invariant_tolerances(options).reciprocity, 1e-3);
     EXPECT_LE(invariant_tolerances(options).energy, 0.1);
+    EXPECT_LE(invariant_tolerances(options).factor, 1e-6);
+    options.form_factors.method = FormFactorMethod::hemicube;
+    EXPECT_LT(invariant_tolerances(options).factor, 1e-4) << "of 256 pixels across";
 }
 
 class ReconstructedCube : public ::testing::Test {
