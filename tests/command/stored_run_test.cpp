@@ -138,11 +138,14 @@ TEST_F(StoredRunTest, RendersAnyView)
 TEST_F(StoredRunTest, FromTooFarAwayNothingIsSeen)
 {
     for (const std::string away : {"1e18,1,1", "1e38,1e38,1e38", "-1e300,0,0"}) {
-        const Outcome outcome = run({"render", path("run"), "-o", path("far.png"), "--size", "40x30", "--wireframe",
-                                     "--from", away, "--to", "1,1,1"});
+        std::vector<std::string> words{"render", path("run"), "-o", path("far.png"), "--size",
+                                       "40x30",  "--from",    away, "--to",          "1,1,1"};
+        const Outcome outcome = run(words);
         ASSERT_EQ(outcome.code, 0) << outcome.err;
         const Image image = read_image(path("far.png")).image;
         EXPECT_EQ(*std::max_element(image.rgb.begin(), image.rgb.end()), 0.0F) << away;
+        words.push_back("--wireframe");
+        EXPECT_EQ(run(words).code, 0) << "its legend is drawn, no line is";
     }
 }
 
