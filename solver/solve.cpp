@@ -39,7 +39,10 @@ SolveReport solve(const RadiositySystem& system, Radiosity& B, const SolveOption
 
 void make_reciprocal(RadiositySystem& system, bool closed)
 {
-    if (!is_reciprocal(system)) repair_symmetrically(system.F, system.area, closed);
+    if (is_reciprocal(system)) return;
+    // Closed is what lamps shine into: what looks out of it keeps what escapes.
+    const bool looks_out = std::ranges::any_of(system.F.escaped.values(), [](double share) { return share > 0; });
+    repair_symmetrically(system.F, system.area, closed && !looks_out);
 }
 
 ColumnSource columns_of(const RadiositySystem& system)

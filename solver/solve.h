@@ -52,7 +52,8 @@ struct SolveReport {
 SolveReport solve(const RadiositySystem& system, Radiosity& B, const SolveOptions& options,
                   const WorkMonitor& monitor = {});
 
-/// Makes sampled rows reciprocal, and closed in a closed scene (repair_symmetrically()); others stay as they are.
+/// Makes sampled rows reciprocal, and closed in a closed scene of which no patch looks out (repair_symmetrically());
+/// others stay as they are.
 void make_reciprocal(RadiositySystem& system, bool closed);
 
 /// Jacobi or Gauss–Seidel on the assembled rows from the start value in B until the last sweep's change, carried on for
