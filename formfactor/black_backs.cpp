@@ -87,7 +87,7 @@ void add_backs(const Scene& scene, const RayCaster& caster, const PatchMesh& mes
 {
     std::vector<PatchId> rows;
     for (const PatchId p : mesh.patches())
-        if (std::abs(1 - F.raw_sum[p]) > least) rows.push_back(p);
+        if (1 - F.raw_sum[p] > least) rows.push_back(p);
     F.rays += for_each_row<Scratch>(
         rows.size(), monitor,
         [&](std::size_t k, Scratch& scratch) {

@@ -32,6 +32,9 @@ namespace {
 
 constexpr double row_tolerance = 1e-12;
 constexpr std::size_t most_iterations = 1000;
+/// Where rows can't all have their sums, some scales grow and others shrink without end, by what the former grow: the
+/// product, which is all that counts, stays a number.
+constexpr double largest_scale = 1e150;
 /// A row with less to share sees nothing but backs.
 constexpr double least_share = 1e-9;
 
@@ -139,7 +142,8 @@ std::vector<double> symmetric_scaling(const FormFactorMatrix& G, const Balance& 
         if (report.converged || report.iterations == most_iterations) return d;
         ++report.iterations;
         for (std::size_t i = 0; i < G.size(); ++i)
-            if (sums[i] > 0) d[i] *= std::sqrt(balance.targets[i] / sums[i]);
+            if (sums[i] > 0)
+                d[i] = std::clamp(d[i] * std::sqrt(balance.targets[i] / sums[i]), 1 / largest_scale, largest_scale);
     }
 }
 

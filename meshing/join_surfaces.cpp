@@ -58,6 +58,20 @@ void for_each_edge(const std::vector<HalfEdge>& edges, Visit visit)
     }
 }
 
+/// Twice the area within its border over the border's length: of a strip its width, of a sharp triangle half of that.
+double mean_width(const Surface& surface, const std::vector<Vec3>& vertices)
+{
+    double twice_area = 0, length = 0;
+    for (const auto& loop : surface.loops)
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            const Vec2 a = surface.frame.to_plane(vertices[loop[k]]);
+            const Vec2 b = surface.frame.to_plane(vertices[loop[(k + 1) % loop.size()]]);
+            twice_area += cross2(Vec2(0.0), a, b);
+            length += glm::distance(a, b);
+        }
+    return twice_area / length;
+}
+
 /// Joins one side of an arrangement.
 class SideJoiner {
 public:
@@ -141,8 +155,11 @@ void SideJoiner::join(const std::vector<HalfEdge>& edges, PlaneSurfaces& result)
         borders[components.root(h.triangle)].emplace_back(forward ? h.low : h.high, forward ? h.high : h.low);
     });
     for (const auto& [root, triangles] : members) {
+        Surface surface = make_surface(triangles, std::move(borders[root]));
+        // A chip that overlaps leave between edges all but in one place, perhaps upright in its plane: it only blocks.
+        if (mean_width(surface, soup_.vertices) < soup_.snap) continue;
         const SurfaceId id(result.surfaces.size());
-        result.surfaces.push_back(make_surface(triangles, std::move(borders[root])));
+        result.surfaces.push_back(std::move(surface));
         for (const std::uint32_t t : triangles) {
             (side_ == Side::front ? result.triangles[t].front : result.triangles[t].back) = id;
         }

@@ -12,7 +12,8 @@
 namespace patchlight {
 
 /// The surfaces of one plane: triangles of equal material (and object, when objects don't join) on one side that hang
-/// together by edges and face the same space: a floor that two sealed rooms share is two surfaces.
+/// together by edges and face the same space: a floor that two sealed rooms share is two surfaces. What is narrower
+/// than the snapping distance, in the mean, is no surface: its triangles are black there.
 struct PlaneSurfaces {
     std::vector<Surface> surfaces;         ///< loops index the soup's vertices
     std::vector<SceneTriangle> triangles;  ///< of the arrangement; front and back index `surfaces`

@@ -145,10 +145,16 @@ std::vector<std::string> empty_objects(const RawScene& raw, const std::vector<So
     return names;
 }
 
+/// Snapping moves corners by up to its distance either way, and may turn over what is narrower than both.
+bool is_face(const SoupFace& face, const FaceShape& shape, const PolygonSoup& soup)
+{
+    return face.loop.size() >= 3 && shape.width > 2 * soup.snap;
+}
+
 void add_face(const SoupFace& face, PolygonSoup& soup, std::vector<SoupFace>& faces, SceneReport& report)
 {
     const FaceShape shape = shape_of(face.loop, soup.vertices);
-    if (face.loop.size() < 3 || shape.width <= soup.snap) {
+    if (!is_face(face, shape, soup)) {
         ++report.zero_area_faces;
         return;
     }
@@ -161,10 +167,12 @@ void add_face(const SoupFace& face, PolygonSoup& soup, std::vector<SoupFace>& fa
     }
     ++report.nonplanar_faces;
     for (const auto& triangle : cut_into_triangles(face.loop, soup.vertices, shape.normal)) {
-        const std::vector<std::uint32_t> loop = canonical_loop({triangle.begin(), triangle.end()});
-        const FaceShape flat = shape_of(loop, soup.vertices);
-        if (loop.size() < 3 || flat.width <= soup.snap) continue;
-        faces.push_back({loop, face.material, face.object, flat.normal, flat.area});
+        SoupFace part{canonical_loop({triangle.begin(), triangle.end()}), face.material, face.object, {}, 0};
+        const FaceShape flat = shape_of(part.loop, soup.vertices);
+        if (!is_face(part, flat, soup)) continue;
+        part.normal = flat.normal;
+        part.area = flat.area;
+        faces.push_back(std::move(part));
     }
 }
 

@@ -28,7 +28,7 @@ struct SceneReport {
     std::size_t vertices_read = 0;
     std::size_t faces_read = 0;
     std::size_t welded_vertices = 0;
-    std::size_t zero_area_faces = 0;  ///< dropped
+    std::size_t zero_area_faces = 0;  ///< dropped: no wider than twice the snapping distance
     std::size_t duplicate_faces = 0;  ///< dropped
     std::size_t nonplanar_faces = 0;  ///< triangulated
     std::size_t self_crossing_faces = 0;

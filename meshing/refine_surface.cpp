@@ -57,7 +57,7 @@ public:
             const VertexHandle from(static_cast<int>(a)), to(static_cast<int>(b));
             const HalfedgeHandle h = mesh_.find_halfedge(from, to);
             if (h.is_valid())
-                bisect(h);
+                split_edge(h);
             else
                 insert_middle(from, to);
             work_.clear();
@@ -164,11 +164,11 @@ private:
     }
 
     /// By circumcentres, which make good triangles; by halving its longest edge where they don't help it, so that it
-    /// ends whatever rounding does.
+    /// ends whatever rounding does. Needles stay long where halves would be no thicker than rounding.
     void shorten(FaceHandle face)
     {
-        for (int tries = 0; tries < most_tries && too_long(face); ++tries) insert_circumcentre(face, 0);
-        while (too_long(face)) split_edge(longest(face));
+        for (int tries = 0; tries < most_tries && too_long(face) && insert_circumcentre(face, 0);) ++tries;
+        while (too_long(face) && split_edge(longest(face))) {}
     }
 
     double shortest_edge(FaceHandle face) const
@@ -179,7 +179,8 @@ private:
     }
 
     /// Puts a vertex into the circumcentre of a face, or, where a border lies in between or too near, into the
-    /// middle of that border's edge (Ruppert's rule). False when that would make an edge shorter than `no_shorter`.
+    /// middle of that border's edge (Ruppert's rule). False when that would make an edge shorter than `no_shorter`, or
+    /// a triangle without area.
     bool insert_circumcentre(FaceHandle face, double no_shorter)
     {
         const auto c = corners(face);
@@ -192,17 +193,18 @@ private:
         if (blocking.is_valid()) {
             // Slivers along a border ask for halves of ever the same piece of it, and would not get shorter themselves.
             if (length2(blocking) < least_share * least_share * length2(longest(face))) blocking = longest(face);
-            if (!may_split(blocking, no_shorter)) return false;
-            split_edge(blocking);
-            return true;
+            return may_split(blocking, no_shorter) && split_edge(blocking);
         }
-        const VertexHandle vertex = add_vertex(plane_.lift(centre));
-        // On an edge it would leave a triangle without area.
+        // On an edge it would leave a triangle without area. Borders and lines stay where they are.
         HalfedgeHandle touched;
+        bool fits = true;
         for (const auto h : mesh_.fh_range(target)) {
-            const Vec2 u = at(mesh_.from_vertex_handle(h)) - centre, v = at(mesh_.to_vertex_handle(h)) - centre;
-            if (u.x * v.y - u.y * v.x < 1e-3 * length2(h)) touched = h;
+            const Vec2 &u = at(mesh_.from_vertex_handle(h)), &v = at(mesh_.to_vertex_handle(h));
+            if (!is_fixed(h) && cross2(u, v, centre) < 1e-3 * length2(h)) touched = h;
+            fits = fits && MeshingPlane::is_thick(u, v, centre);
         }
+        if (touched.is_valid() ? !may_divide(touched, centre) : !fits) return false;
+        const VertexHandle vertex = add_vertex(plane_.lift(centre));
         if (touched.is_valid())
             split(mesh_.edge_handle(touched), vertex);
         else
@@ -290,11 +292,15 @@ private:
         return {face, last_resort};
     }
 
-    void split_edge(HalfedgeHandle h)
+    /// Halves an edge; false where that would leave a triangle without area.
+    bool split_edge(HalfedgeHandle h)
     {
-        const VertexHandle middle = add_vertex(middle_of(mesh_.from_vertex_handle(h), mesh_.to_vertex_handle(h)));
+        const Vec3 place = middle_of(mesh_.from_vertex_handle(h), mesh_.to_vertex_handle(h));
+        if (!may_divide(h, plane_.to_plane(place))) return false;
+        const VertexHandle middle = add_vertex(place);
         split(mesh_.edge_handle(h), middle);
         settle(middle);
+        return true;
     }
 
     Vec3 middle_of(VertexHandle a, VertexHandle b) const { return 0.5 * (mesh_.point(a) + mesh_.point(b)); }
@@ -314,13 +320,6 @@ private:
     {
         mesh_.split(face, vertex);
         kinds_.resize(mesh_.n_edges(), no_line);
-    }
-
-    /// Unless what it leaves would be too thin.
-    void bisect(HalfedgeHandle h)
-    {
-        const Vec3 middle = middle_of(mesh_.from_vertex_handle(h), mesh_.to_vertex_handle(h));
-        if (may_divide(h, plane_.to_plane(middle))) split_edge(h);
     }
 
     /// Whether triangles are left with area when an edge is divided at q.

@@ -56,14 +56,20 @@ LinesOfSurface by_surface(const Scene& scene, std::span<const SurfaceLine> lines
     return result;
 }
 
+double border_length(const Scene& scene, const Surface& surface)
+{
+    double length = 0;
+    for (const auto& loop : surface.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            length += glm::distance(scene.vertices[loop[i]], scene.vertices[loop[(i + 1) % loop.size()]]);
+    return length;
+}
+
 /// An angle bound costs a narrow strip as many triangles as it is longer than wide: those narrower than a
 /// sixtieth of the longest edge do without.
 double angle_bound(const Scene& scene, const Surface& surface, double max_edge, double min_angle)
 {
-    double border = 0;
-    for (const auto& loop : surface.loops)
-        for (std::size_t i = 0; i < loop.size(); ++i)
-            border += glm::distance(scene.vertices[loop[i]], scene.vertices[loop[(i + 1) % loop.size()]]);
+    const double border = border_length(scene, surface);
     return 2 * surface.area / border < std::min(max_edge, border / 2) / 60 ? 0 : min_angle;
 }
 
@@ -96,12 +102,17 @@ std::size_t count(const std::vector<SurfaceTriangulation>& pieces)
 std::vector<SurfaceTriangulation> triangulate_to_count(const Scene& scene, std::size_t wanted, double min_angle,
                                                        const LinesOfSurface& lines)
 {
-    double area = 0;
-    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s)
-        if (scene.material_of(SurfaceId(s)).reflects()) area += scene.surfaces[s].area;
+    double area = 0, border = 0;
+    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+        if (!scene.material_of(SurfaceId(s)).reflects()) continue;
+        area += scene.surfaces[s].area;
+        border += border_length(scene, scene.surfaces[s]);
+    }
     const double n = static_cast<double>(wanted);
-    // A mesh with longest edge h has triangles of about h²/4.
-    double h = std::max(2 * std::sqrt(area / n), 1e-6 * scene.diameter);
+    // A mesh with longest edge h has triangles of about h²/4, and, however narrow its surfaces, with k edges on the
+    // border of a surface k − 2 at least.
+    double h = std::max({2 * std::sqrt(area / n), border / (n + 2 * static_cast<double>(scene.surfaces.size())),
+                         1e-6 * scene.diameter});
     double too_fine = 0, coarse_enough = std::numeric_limits<double>::infinity();
     std::vector<SurfaceTriangulation> best;
     std::size_t best_count = 0;

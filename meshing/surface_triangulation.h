@@ -37,12 +37,13 @@ struct MeshingPlane {
     {
         return {std::ldexp(std::round(std::ldexp(q.x, 30)), -30), std::ldexp(std::round(std::ldexp(q.y, 30)), -30)};
     }
-    /// A counter-clockwise triangle whose least height is several times the rounding of its corners.
-    static bool is_thick(const Vec2& a, const Vec2& b, const Vec2& c)
+    /// The least height of a triangle, less several times the rounding of its corners; negative also when it is
+    /// clockwise.
+    static double thickness(const Vec2& a, const Vec2& b, const Vec2& c)
     {
-        const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-        return cross2(a, b, c) > 4e-9 * longest;
+        return cross2(a, b, c) / std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)}) - 4e-9;
     }
+    static bool is_thick(const Vec2& a, const Vec2& b, const Vec2& c) { return thickness(a, b, c) > 0; }
     Vec2 to_plane(const Vec3& p) const { return rounded(frame.to_plane(p) / diameter); }
     Vec3 lift(const Vec2& q) const { return frame.lift(q * diameter); }
 };

@@ -65,6 +65,36 @@ public:
         mark_inside();
     }
 
+    /// Triangles no thicker than rounding, which may have turned them over, between corners that lie all but on one
+    /// straight line: with their longest edge on the border they are taken off, else that edge is flipped where it
+    /// helps. The points given lie at `places`. Should nothing be left, nothing is taken.
+    void mend(const MeshingPlane& plane, const std::vector<Vec3>& places)
+    {
+        std::vector<Vec2> at = lines_.points;
+        for (std::size_t k = 0; k < places.size(); ++k) at[k] = plane.frame.to_plane(places[k]) / plane.diameter;
+        std::vector<FaceHandle> taken;
+        bool changed = true;
+        for (int round = 0; changed && round < most_rounds; ++round) {
+            changed = false;
+            for (FaceHandle face : cdt_.finite_face_handles()) {
+                if (!face->info().inside || thickness(at, corners(face)) > 0) continue;
+                const int i = longest_edge(at, face);
+                if (is_border(face, i)) {
+                    face->info().inside = false;
+                    taken.push_back(face);
+                } else if (flip_helps(at, face, i)) {
+                    cdt_.flip(face, i);
+                } else {
+                    continue;
+                }
+                changed = true;
+            }
+        }
+        const auto inside = [](FaceHandle face) { return face->info().inside; };
+        if (std::ranges::none_of(cdt_.finite_face_handles(), inside))
+            for (const FaceHandle face : taken) face->info().inside = true;
+    }
+
     /// What lies inside. The points given lie at `places`, those that came since are lifted from the plane.
     SurfaceTriangulation extract(const MeshingPlane& plane, const std::vector<Vec3>& places) const;
 
@@ -103,6 +133,45 @@ private:
                 if (!on_border(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i))))
                     work.push_back(face->neighbor(i));
         }
+    }
+
+    using Corners = std::array<std::uint32_t, 3>;
+    static constexpr int most_rounds = 100;
+
+    static std::uint32_t name(FaceHandle face, int i) { return face->vertex(i)->info().point; }
+    static Corners corners(FaceHandle face) { return {name(face, 0), name(face, 1), name(face, 2)}; }
+
+    /// How much higher a triangle is than is_thick() asks for.
+    static double thickness(const std::vector<Vec2>& at, const Corners& c)
+    {
+        return MeshingPlane::thickness(at[c[0]], at[c[1]], at[c[2]]);
+    }
+
+    static int longest_edge(const std::vector<Vec2>& at, FaceHandle face)
+    {
+        const auto length = [&](int i) {
+            return glm::distance(at[name(face, Triangulation::ccw(i))], at[name(face, Triangulation::cw(i))]);
+        };
+        int longest = 0;
+        for (const int i : {1, 2})
+            if (length(i) > length(longest)) longest = i;
+        return longest;
+    }
+
+    bool is_border(FaceHandle face, int i) const
+    {
+        return !face->neighbor(i)->info().inside ||
+               on_border(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i)));
+    }
+
+    /// Whether the other diagonal of a triangle and its neighbour leaves a thicker thinner half.
+    bool flip_helps(const std::vector<Vec2>& at, FaceHandle face, int i) const
+    {
+        const FaceHandle other = face->neighbor(i);
+        const std::uint32_t near = name(face, i), left = name(face, Triangulation::cw(i)),
+                            right = name(face, Triangulation::ccw(i)), far = name(other, cdt_.mirror_index(face, i));
+        return std::min(thickness(at, {near, right, far}), thickness(at, {near, far, left})) >
+               std::min(thickness(at, corners(face)), thickness(at, corners(other)));
     }
 
     /// The first face, clockwise, of those round a vertex that hang together inside; any, but always the same, when
@@ -246,7 +315,9 @@ SurfaceTriangulation triangulate_polygon(const Scene& scene, SurfaceId surface)
         for (std::size_t i = 0; i < loop.size(); ++i)
             outline.pieces.push_back(
                 {{point_of[loop[i]], point_of[loop[(i + 1) % loop.size()]]}, LineKind::contact, true, 0});
-    return ArrangementTriangulation(std::move(outline)).extract(plane, places);
+    ArrangementTriangulation triangulation(std::move(outline));
+    triangulation.mend(plane, places);
+    return triangulation.extract(plane, places);
 }
 
 SurfaceTriangulation insert_lines(const MeshingPlane& plane, const SurfaceTriangulation& triangulation,

@@ -184,13 +184,13 @@ InvariantTolerances invariant_tolerances(const AdaptiveOptions& options)
         t.energy = 0.5;
     }
     if (method == FormFactorMethod::exact || method == FormFactorMethod::quadrature) {
-        // They know of each pair alone; what a row lacks is their error, and pairs share one A F.
-        t.row_sum = method == FormFactorMethod::exact ? 0.1 : 0.2;
+        // They know of each pair alone; what a row lacks is their error, which is asked for, and pairs share one A F.
+        t.row_sum = std::max(method == FormFactorMethod::exact ? 0.1 : 0.2, 10 * options.form_factors.tolerance);
         t.reciprocity = 1e-6;
         t.energy = t.row_sum;
     } else if (options.final.solver == Solver::conjugate_gradient) {
-        // Scaling can't always bring every row to its sum.
-        t.row_sum = t.energy = 0.3;
+        // Scaling can't always bring every row to its sum; the row may be of one factor.
+        t.row_sum = t.energy = t.factor = 0.3;
         t.reciprocity = 1e-6;
     }
     return t;

@@ -275,6 +275,18 @@ TEST(Repair, WhatCannotBeScaledIsSaid)
     EXPECT_THROW(repair_symmetrically(negative, PatchField<double>(2, 1.0), true), std::invalid_argument);
 }
 
+// Found by fuzzing: one scale grew and the other shrank until their product was no number, or 0 and so converged.
+TEST(Repair, ScalesThatGrowWithoutEndLeaveNumbers)
+{
+    for (const double area : {100.0, 1e9}) {
+        FormFactorMatrix matrix = matrix_of({{{1, 1}}, {{0, 0.5}, {2, 0.5}}, {{1, 1}}});
+        const RepairReport report =
+            repair_symmetrically(matrix, PatchField<double>(std::vector<double>{area, 1, area}), true);
+        EXPECT_FALSE(report.converged);
+        for (const double factor : matrix.factors) EXPECT_TRUE(factor > 0 && std::isfinite(factor)) << factor;
+    }
+}
+
 TEST(Repair, ARowWithoutFactorsStaysWithout)
 {
     FormFactorMatrix matrix = matrix_of({{{1, 0.9}}, {{0, 0.9}}, {}});

@@ -1,6 +1,7 @@
 #include "formfactor/exact_rows.h"
 
 #include "boxes.h"
+#include "formfactor/black_backs.h"
 #include "formfactor/form_factor_matrix.h"
 #include "formfactor/pair_factor.h"
 #include "formfactor/random_numbers.h"
@@ -197,6 +198,25 @@ TEST(ExactRows, SealedRoomsExchangeNothing)
 }
 
 // Found by fuzzing: a closed room whose walls have an outside. No light gets there, but rows sum to 1 there, too.
+// Found by fuzzing: where pairs were too large already, rays that began beyond a narrow gap added backs.
+TEST(ExactRows, BacksAreLookedForWhereSomethingIsMissing)
+{
+    Scene scene = cube();
+    testing::add_surface(scene, {{0.5, 0.2, 0.2}, {0.5, 0.8, 0.2}, {0.5, 0.8, 0.8}, {0.5, 0.2, 0.8}}, 0);
+    const RayCaster caster(scene);
+    const PatchMesh mesh = mesh_of(scene, 100);
+    const Blockers blockers(scene);
+    for (const double sum : {0.9, 1.1}) {
+        FormFactorMatrix F;
+        F.raw_sum = PatchField<double>(mesh.patch_count(), sum);
+        F.backs = F.escaped = PatchField<double>(mesh.patch_count(), 0.0);
+        add_backs(scene, caster, mesh, blockers, 1e-4, 1, F, {});
+        std::size_t with_backs = 0;
+        for (const PatchId p : mesh.patches()) with_backs += F.backs[p] > 0 ? 1 : 0;
+        EXPECT_EQ(with_backs > 0, sum < 1);
+    }
+}
+
 TEST(ExactRows, OutsidesOfClosedRoomsLookOut)
 {
     Scene scene = cube();

@@ -56,15 +56,16 @@ bool holds(const Target& target, const std::filesystem::path& file)
 
 }  // namespace
 
-/// Gives each target the files of CORPUS/TARGET: what fuzzing found once is not found again.
+/// Gives each target, or one, the files of CORPUS/TARGET: what fuzzing found once is not found again.
 int main(int argc, char** argv)
 {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: fuzz_replay CORPUS\n");
+    if (argc != 2 && argc != 3) {
+        std::fprintf(stderr, "usage: fuzz_replay CORPUS [TARGET]\n");
         return 2;
     }
     int failures = 0;
     for (const Target& target : targets) {
+        if (argc == 3 && std::string(argv[2]) != target.name) continue;
         const auto files = files_in(std::filesystem::path(argv[1]) / target.name);
         if (files.empty()) {
             std::printf("%s: FAILED: no files\n", target.name);

@@ -140,6 +140,18 @@ TEST(BuildScene, a_lamp_that_touches_a_block_from_outside_is_in_the_open)
     EXPECT_TRUE(load(with(box({1, 1, 0}, {1, 1, 2}, true), inside)).scene.closed);
 }
 
+// Found by fuzzing: snapping put a corner of a chip off its plane, and a patch had four million times its area.
+TEST(BuildScene, chips_narrower_than_snapping_are_no_surfaces)
+{
+    const auto polygons = with(box({3e-8, 0.5, 1.00000003}, {0.5, 2.0102, 1}, false),
+                               {{{{0, 1, 2.000000001}, {0.6118, 1.5, 2.000000001}, {0.5, 2.00000003, 2.000000001}}},
+                                rectangle({0.75, 0.75, 2}, {0, 0.5, 0}, {0.5, 0, 0}, "lamp")});
+    for (const bool turn : {false, true}) {
+        const LoadedScene loaded = load(polygons, {.all_two_sided = true}, turn ? Placement(rotated) : Placement());
+        for (const Surface& surface : loaded.scene.surfaces) EXPECT_GT(surface.area, 1e-3);
+    }
+}
+
 TEST(BuildScene, needles_stay_and_are_counted)
 {
     const LoadedScene loaded =

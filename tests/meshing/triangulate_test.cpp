@@ -134,6 +134,42 @@ TEST(Triangulate, slivers_along_a_border_end)
     }
 }
 
+// Found by fuzzing; what went wrong once is said of each.
+TEST(Triangulate, outlines_that_all_but_touch_themselves_are_covered)
+{
+    const double a = 1.4858, e = 3e-8;
+    const Polygon lamp = rectangle({0.75, 0.75, 2}, {0, 0.5, 0}, {0.5, 0, 0}, "lamp");
+    const std::vector<std::pair<const char*, std::vector<Polygon>>> scenes{
+        {"spikes: edges as short as for so small an area, a hundred thousand of them",
+         {lamp, {{{1.5, 0.5, 0.50000003}, {0.5, 0.5, 2}, {1.5, 0.5, 0.5}, {0, 0.5, 0}}}}},
+        {"a border edge was moved to a circumcentre beside its end",
+         {lamp,
+          {{{1.00000003, 0.5, 0.5}, {1.50000003, 0.5, 0.5}, {1.50000003, 0.5, 2}, {1.00000003, 0.5, 2}}},
+          {{{2, 0.5, 0.5}, {0.5, 0.5, 1.5}, {1, 0.5, 0.0874}, {1, 0.5, 1.5}, {2, 0.5, 2}, {1, 0.5, 1.5}}}}},
+        {"two circumcentres in one place",
+         {{{{1.4858, 0, 0}, {0, 0.5, 1}, {2, 1.500000001, 1}, {0, 0.500000001, 0}, {0, 2, 2}}, "lamp"},
+          {{{1, 1, 0}, {1, 1, 1}, {1, 2, 0}, {1, 1.5, 1.5}, {1, 0.5, 2}, {1, 0, 1}, {1, 0, 2}, {1, 2, 2.00000003}}}}},
+        {"a needle was halved where it is no wider than rounding",
+         with(box({e, e, a}, {a, a, a}, false),
+              {{{a, a, a}, {a, a, 1.5}, {a, 1.5, e}, {a, e, e}, {a, e, e}}, "lamp"})}};
+    for (const auto& [name, polygons] : scenes)
+        for (const bool all_two_sided : {false, true}) {
+            SCOPED_TRACE(name);
+            const LoadedScene loaded = load(polygons, {.all_two_sided = all_two_sided});
+            for (const MeshingOptions& options : {MeshingOptions{}, {.max_elements = 24}, {.max_edge = 0.3}}) {
+                PatchMesh mesh;
+                EXPECT_LT(seconds([&] { mesh = triangulate(loaded.scene, options); }), 2);
+                EXPECT_LT(mesh.patch_count(), 8000U);
+                for (std::size_t k = 0; k < loaded.scene.surfaces.size(); ++k) {
+                    double area = 0;
+                    for (const PatchId p : mesh.patches_of(SurfaceId(k))) area += mesh.area(p);
+                    EXPECT_NEAR(area, loaded.scene.surfaces[k].area,
+                                loaded.report.snap_distance * loaded.scene.diameter);
+                }
+            }
+        }
+}
+
 TEST(Triangulate, as_many_elements_as_were_asked_for)
 {
     const Scene cube = grey_cube(), cornell = cornell_box();
