@@ -146,8 +146,10 @@ TEST(BuildScene, chips_narrower_than_snapping_are_no_surfaces)
     const auto polygons = with(box({3e-8, 0.5, 1.00000003}, {0.5, 2.0102, 1}, false),
                                {{{{0, 1, 2.000000001}, {0.6118, 1.5, 2.000000001}, {0.5, 2.00000003, 2.000000001}}},
                                 rectangle({0.75, 0.75, 2}, {0, 0.5, 0}, {0.5, 0, 0}, "lamp")});
+    SceneOptions options;
+    options.all_two_sided = true;
     for (const bool turn : {false, true}) {
-        const LoadedScene loaded = load(polygons, {.all_two_sided = true}, turn ? Placement(rotated) : Placement());
+        const LoadedScene loaded = load(polygons, options, turn ? Placement(rotated) : Placement());
         for (const Surface& surface : loaded.scene.surfaces) EXPECT_GT(surface.area, 1e-3);
     }
 }

@@ -155,7 +155,9 @@ TEST(Triangulate, outlines_that_all_but_touch_themselves_are_covered)
     for (const auto& [name, polygons] : scenes)
         for (const bool all_two_sided : {false, true}) {
             SCOPED_TRACE(name);
-            const LoadedScene loaded = load(polygons, {.all_two_sided = all_two_sided});
+            SceneOptions scene;
+            scene.all_two_sided = all_two_sided;
+            const LoadedScene loaded = load(polygons, scene);
             for (const MeshingOptions& options : {MeshingOptions{}, {.max_elements = 24}, {.max_edge = 0.3}}) {
                 PatchMesh mesh;
                 EXPECT_LT(seconds([&] { mesh = triangulate(loaded.scene, options); }), 2);
