@@ -57,9 +57,11 @@ void add_axes(const TomlFile& toml, const TomlEntry& section, const OptionNames&
 
 void add_scenes(const TomlFile& toml, const TomlEntry& entry, Study& study)
 {
-    const bool one = !entry.value->is_array();
-    std::vector<OptionText> written =
-        one ? std::vector<OptionText>{{"scene", toml.text(entry), entry.value_place()}} : toml.axis_values(entry);
+    std::vector<OptionText> written;
+    if (entry.value->is_array())
+        written = toml.axis_values(entry);
+    else
+        written.push_back({"scene", toml.text(entry), entry.value_place()});
     for (const OptionText& scene : written) {
         study.scenes.push_back({"scene", beside(study.file, scene.value).string(), scene.place});
     }

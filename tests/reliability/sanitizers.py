@@ -57,7 +57,7 @@ def run_tests(folder, jobs, environment, *choice):
     environment = os.environ | environment | {"LD_LIBRARY_PATH": str(folder)}
     done = subprocess.run(["ctest", "--test-dir", folder, "-j", str(jobs), "--timeout", "3600", "--output-on-failure",
                            *choice], env=environment, stdout=subprocess.PIPE, text=True)
-    failed = re.findall(r"^\s*\d+ - (\S+) \((?!Skipped|Disabled)", done.stdout, re.M)
+    failed = re.findall(r"^\s*\d+ - (.+) \((?!Skipped|Disabled)", done.stdout, re.M)
     ran = re.search(r"tests passed, \d+ tests failed out of (\d+)", done.stdout)
     if done.returncode != 0:
         print(done.stdout[-20000:])
