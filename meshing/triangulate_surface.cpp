@@ -21,7 +21,8 @@ struct VertexInfo {
     std::uint32_t point = unnamed;
 };
 struct FaceInfo {
-    bool inside = false;
+    bool inside = false, reached = false;
+    int winding = 0;
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -107,31 +108,40 @@ private:
         if (chain.front() != start->info().point) std::ranges::reverse(chain);
         for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
             if (piece.border)
-                border_.emplace(chain[k], chain[k + 1]);
+                border_[std::minmax(chain[k], chain[k + 1])] += chain[k] < chain[k + 1] ? 1 : -1;
             else
                 line_edges_.push_back({{chain[k], chain[k + 1]}, piece.kind});
         }
     }
 
-    /// Whether an edge is the border's, either way round.
-    bool on_border(VertexHandle a, VertexHandle b) const { return runs(a, b) || runs(b, a); }
-    bool runs(VertexHandle a, VertexHandle b) const { return border_.contains({a->info().point, b->info().point}); }
+    /// How often the border runs from a to b, less how often back. Where rounding closed a gap it does both.
+    int runs(VertexHandle a, VertexHandle b) const
+    {
+        const std::uint32_t u = a->info().point, v = b->info().point;
+        const auto found = border_.find(std::minmax(u, v));
+        return found == border_.end() ? 0 : u < v ? found->second : -found->second;
+    }
+    bool on_border(VertexHandle a, VertexHandle b) const { return runs(a, b) != 0; }
 
-    /// From the border inwards, which is on its left.
+    /// Inside is what the border winds round: found from outside in.
     void mark_inside()
     {
-        std::vector<FaceHandle> work;
-        for (const FaceHandle face : cdt_.finite_face_handles())
-            for (int i = 0; i < 3; ++i)
-                if (runs(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i)))) work.push_back(face);
+        if (cdt_.dimension() < 2) return;
+        std::vector<FaceHandle> work{cdt_.infinite_face()};
+        work.front()->info().reached = true;
         while (!work.empty()) {
             const FaceHandle face = work.back();
             work.pop_back();
-            if (face->info().inside || cdt_.is_infinite(face)) continue;
-            face->info().inside = true;
-            for (int i = 0; i < 3; ++i)
-                if (!on_border(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i))))
-                    work.push_back(face->neighbor(i));
+            for (int i = 0; i < 3; ++i) {
+                const FaceHandle next = face->neighbor(i);
+                if (next->info().reached) continue;
+                const VertexHandle a = face->vertex(Triangulation::ccw(i)), b = face->vertex(Triangulation::cw(i));
+                const bool finite = !cdt_.is_infinite(a) && !cdt_.is_infinite(b);
+                // The border has on its left what it winds round, and so has the edge from a to b its face.
+                const int winding = face->info().winding - (finite ? runs(a, b) : 0);
+                next->info() = {winding > 0, true, winding};
+                work.push_back(next);
+            }
         }
     }
 
@@ -190,7 +200,7 @@ private:
 
     LineArrangement lines_;
     Triangulation cdt_;
-    std::set<Pair> border_;
+    std::map<Pair, int> border_;
     std::vector<SurfaceTriangulation::Line> line_edges_;  // between points
 };
 

@@ -201,24 +201,16 @@ AdaptiveOptions chosen_options(Choices& choices)
     return options;
 }
 
-double border_length(const Scene& scene, const Surface& surface)
-{
-    double length = 0;
-    for (const auto& loop : surface.loops)
-        for (std::size_t k = 0; k < loop.size(); ++k)
-            length += glm::distance(scene.vertices[loop[k]], scene.vertices[loop[(k + 1) % loop.size()]]);
-    return length;
-}
-
 /// The patches of each surface cover it: to a millionth, far above rounding and far below any patch, or to what
 /// snapping may move slivers' borders by, out of their plane, too, where patches have no area.
 void check_areas(const Scene& scene, const PatchMesh& mesh)
 {
+    const double along_an_edge = SceneOptions{}.snap * scene.diameter * scene.diameter;
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
         const Surface& surface = scene.surfaces[s];
-        double area = 0;
+        double area = 0, snapped = 0;
+        for (const auto& loop : surface.loops) snapped += along_an_edge * static_cast<double>(loop.size());
         for (const PatchId patch : mesh.patches_of(SurfaceId(s))) area += mesh.area(patch);
-        const double snapped = 2 * SceneOptions{}.snap * scene.diameter * border_length(scene, surface);
         if (std::abs(area - surface.area) > 1e-6 * surface.area + snapped)
             throw std::logic_error(fmt::format("the patches of surface {} have {} m2 of {}", s, area, surface.area));
     }

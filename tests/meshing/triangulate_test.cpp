@@ -25,6 +25,16 @@ double seconds(const std::function<void()>& work)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// The patches of each surface have its area, to what snapping may move the borders of slivers by.
+void expect_covered(const LoadedScene& loaded, const PatchMesh& mesh)
+{
+    for (std::size_t k = 0; k < loaded.scene.surfaces.size(); ++k) {
+        double area = 0;
+        for (const PatchId p : mesh.patches_of(SurfaceId(k))) area += mesh.area(p);
+        EXPECT_NEAR(area, loaded.scene.surfaces[k].area, loaded.report.snap_distance * loaded.scene.diameter);
+    }
+}
+
 }  // namespace
 
 TEST(Triangulate, polygons_of_all_kinds_are_covered_once)
@@ -125,12 +135,7 @@ TEST(Triangulate, slivers_along_a_border_end)
         PatchMesh mesh;
         EXPECT_LT(seconds([&] { mesh = triangulate(loaded.scene, options); }), 2);
         EXPECT_LT(mesh.patch_count(), 8000U);
-        for (std::size_t k = 0; k < loaded.scene.surfaces.size(); ++k) {
-            double area = 0;
-            for (const PatchId p : mesh.patches_of(SurfaceId(k))) area += mesh.area(p);
-            // The sliver is narrower than what snapping may move its borders by.
-            EXPECT_NEAR(area, loaded.scene.surfaces[k].area, loaded.report.snap_distance * loaded.scene.diameter);
-        }
+        expect_covered(loaded, mesh);
     }
 }
 
@@ -162,14 +167,22 @@ TEST(Triangulate, outlines_that_all_but_touch_themselves_are_covered)
                 PatchMesh mesh;
                 EXPECT_LT(seconds([&] { mesh = triangulate(loaded.scene, options); }), 2);
                 EXPECT_LT(mesh.patch_count(), 8000U);
-                for (std::size_t k = 0; k < loaded.scene.surfaces.size(); ++k) {
-                    double area = 0;
-                    for (const PatchId p : mesh.patches_of(SurfaceId(k))) area += mesh.area(p);
-                    EXPECT_NEAR(area, loaded.scene.surfaces[k].area,
-                                loaded.report.snap_distance * loaded.scene.diameter);
-                }
+                expect_covered(loaded, mesh);
             }
         }
+}
+
+// Found by fuzzing: what was a notch became part of the surface.
+TEST(Triangulate, a_corner_that_rounding_puts_on_the_opposite_border_fills_no_notch)
+{
+    Scene scene = flat_scene({{{0, 0}, {0.3, 0}, {0.3, 0.98}, {0.25, 1}, {0.3, 1.000000001}, {0, 1.000000001}}});
+    for (const double diameter : {2.0, 2.3, 2.9, 3.7, 4.1}) {
+        scene.diameter = diameter;
+        const PatchMesh mesh = triangulate(scene, {.max_edge = 0.2});
+        double area = 0;
+        for (const PatchId p : mesh.patches()) area += mesh.area(p);
+        EXPECT_NEAR(area, scene.surfaces[0].area, 1e-8 * diameter * diameter);
+    }
 }
 
 TEST(Triangulate, as_many_elements_as_were_asked_for)

@@ -252,7 +252,9 @@ TEST(Hierarchical, OnePatchAndNoLight)
     alone.objects = {"one"};
     alone.materials = {{.name = "lamp", .reflectance = Rgb(0.5), .emission = Rgb(1.0)}};
     testing::add_surface(alone, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0);
+    alone.diameter = std::sqrt(2.0);
     const Room one(std::move(alone), 1, false);
+    ASSERT_EQ(one.mesh.patch_count(), 1U);
     for (const PatchId p : one.mesh.patches()) EXPECT_EQ(linked(one, 0.05).B[p], Rgb(1.0));
 
     const Room dark(cube_inside({0, 0, 0, 0, 0, 0}, {{.name = "wall", .reflectance = Rgb(0.7)}}), 200, false);
