@@ -3,6 +3,7 @@
 #include "formfactor/compressed_rows.h"
 #include "formfactor/hemicube.h"
 #include "formfactor/random_numbers.h"
+#include "formfactor/ray_caster.h"
 
 #include <memory>
 #include <numbers>
@@ -69,7 +70,7 @@ FormFactorMatrix hemicube_rows(const Scene& scene, const PatchMesh& mesh, const 
             if (!scratch.cube) scratch.cube = std::make_unique<Hemicube>(options.resolution);
             const PatchId patch(i);
             PlaneFrame frame = scene.surface(mesh.surface(patch)).frame;
-            frame.origin = mesh.centroid(patch);
+            frame.origin = mesh.centroid(patch) + departure * scene.diameter * frame.n;
             RandomNumbers random(options.seed, i);
             scratch.cube->render(triangles, frame, 2 * std::numbers::pi * random.uniform());
             scratch.cube->sum(scratch.sums);

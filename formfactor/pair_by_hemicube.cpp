@@ -2,6 +2,7 @@
 #include "formfactor/hemicube.h"
 #include "formfactor/independent_groups.h"
 #include "formfactor/pair_factor.h"
+#include "formfactor/ray_caster.h"
 #include "formfactor/scrambled_points.h"
 
 #include <tbb/parallel_for.h>
@@ -63,7 +64,7 @@ PairFactor pair_by_hemicube(const Scene& scene, std::span<const Facet> from, std
             const auto [u, v] = points(static_cast<std::uint32_t>(k));
             const FacetPoint origin = origins.at(u, v);
             PlaneFrame frame = scene.surface(from[origin.facet].surface).frame;
-            frame.origin = origin.position;
+            frame.origin = origin.position + departure * scene.diameter * frame.n;
             cube.render(triangles, frame, 2 * std::numbers::pi * random.uniform());
             group.sum += seen_of_target(cube, sums);
         }

@@ -119,7 +119,7 @@ void RayBatch::set(std::size_t i, const Vec3& origin, const Vec3& direction, flo
     reach[i] = how_far;
 }
 
-RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offset_(1e-6 * scene.diameter)
+RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()), offset_(departure * scene.diameter)
 {
     impl_->isa = instruction_set_of_this_machine();
     impl_->device = rtcNewDevice(("isa=" + impl_->isa).c_str());

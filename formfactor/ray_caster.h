@@ -10,6 +10,10 @@
 
 namespace patchlight {
 
+/// How far in front of its surface begins what looks out from it, in diameters of the scene: several times what single
+/// precision can confuse, and far above what snapping moves.
+inline constexpr double departure = 1e-6;
+
 /// Rays as structure of arrays, in the scene's recentred metres. Reused from batch to batch: no allocation in
 /// a hot loop. Neighbouring rays should be similar: they are traced in packets of 8.
 struct RayBatch {
@@ -53,8 +57,7 @@ public:
     /// blocked[i] = 1 when anything stands on ray i before its reach.
     void occluded(const RayBatch& rays, std::vector<std::uint8_t>& blocked) const;
 
-    /// Where a ray must start that leaves the point p of a surface with normal n: in front of it by 1e-6 of the
-    /// scene's diameter, several times what single precision can confuse.
+    /// Where a ray must start that leaves the point p of a surface with normal n.
     Vec3 leave(const Vec3& p, const Vec3& n) const { return p + offset_ * n; }
 
     /// The instruction set Embree runs with: hits agree to the bit only within one.

@@ -140,6 +140,22 @@ TEST(HemicubeRows, BacksBlockAndAreToldApart)
     for (const PatchId i : mesh.patches_of(sheet)) EXPECT_EQ(F.backs[i], 0);
 }
 
+// Snapping moves a corner of one side of a sheet in front of the other by a billionth: neither side sees the other.
+TEST(HemicubeRows, TheOtherSideOfASheetIsNotSeen)
+{
+    Scene scene;
+    scene.materials = {Material{}};
+    scene.diameter = 2 * std::sqrt(2.0);
+    testing::add_surface(scene, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, 0);
+    testing::add_surface(scene, {{-1, 1, 0}, {1, 1, 0}, {1, -1, 3e-9}, {-1, -1, 3e-9}}, 0);
+    const PatchMesh mesh = triangulate(scene, {.max_edge = 1});
+    const FormFactorMatrix F = hemicube_rows(scene, mesh, {.resolution = 8}, {});
+    for (const PatchId i : mesh.patches()) {
+        EXPECT_EQ(F.raw_sum[i] + F.backs[i], 0) << i.value;
+        EXPECT_NEAR(F.escaped[i], 1, 0.01) << i.value;  // 1 + 0.54/resolution²
+    }
+}
+
 TEST(HemicubeRows, ThreadsDoNotChangeABitAndSeedsTurn)
 {
     const Scene scene = cube();
