@@ -68,7 +68,8 @@ public:
 
     /// Triangles no thicker than rounding, which may have turned them over, between corners that lie all but on one
     /// straight line: with their longest edge on the border they are taken off, else that edge is flipped where it
-    /// helps. The points given lie at `places`. Should nothing be left, nothing is taken.
+    /// helps, else they are taken off by any edge on the border. The points given lie at `places`. Should nothing be
+    /// left, nothing is taken.
     void mend(const MeshingPlane& plane, const std::vector<Vec3>& places)
     {
         std::vector<Vec2> at = lines_.points;
@@ -80,11 +81,11 @@ public:
             for (FaceHandle face : cdt_.finite_face_handles()) {
                 if (!face->info().inside || thickness(at, corners(face)) > 0) continue;
                 const int i = longest_edge(at, face);
-                if (is_border(face, i)) {
+                if (!is_border(face, i) && flip_helps(at, face, i)) {
+                    cdt_.flip(face, i);
+                } else if (is_border(face, 0) || is_border(face, 1) || is_border(face, 2)) {
                     face->info().inside = false;
                     taken.push_back(face);
-                } else if (flip_helps(at, face, i)) {
-                    cdt_.flip(face, i);
                 } else {
                     continue;
                 }

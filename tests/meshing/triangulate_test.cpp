@@ -185,6 +185,29 @@ TEST(Triangulate, a_corner_that_rounding_puts_on_the_opposite_border_fills_no_no
     }
 }
 
+// Found by fuzzing: a chip no thicker than rounding lay on the border with its second longest edge, and stayed. Off its
+// plane by what snapping moves it had a factor of 3.2 to its neighbour.
+TEST(Triangulate, a_chip_at_a_corner_cut_off_by_rounding_is_taken_off)
+{
+    Scene scene = flat_scene({{{0, 0},
+                               {0.3059, 0},
+                               {0.3059, 0.98591319623},
+                               {0.25, 1},
+                               {0.3059, 1.000000001},
+                               {0.249999985, 1},
+                               {0, 0.928571432857}}});
+    scene.diameter = 3;
+    const MeshingPlane plane{scene.surfaces[0].frame, scene.diameter};
+    const SurfaceTriangulation whole = triangulate_polygon(scene, SurfaceId(std::size_t{0}));
+    double twice = 0;
+    for (const auto& t : whole.triangles) {
+        const auto at = [&](std::size_t k) { return plane.frame.to_plane(whole.positions[t[k]]) / plane.diameter; };
+        EXPECT_TRUE(MeshingPlane::is_thick(at(0), at(1), at(2)));
+        twice += cross2(at(0), at(1), at(2));
+    }
+    EXPECT_NEAR(0.5 * twice * plane.diameter * plane.diameter, scene.surfaces[0].area, 1e-8);
+}
+
 TEST(Triangulate, as_many_elements_as_were_asked_for)
 {
     const Scene cube = grey_cube(), cornell = cornell_box();
