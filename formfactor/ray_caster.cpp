@@ -175,7 +175,7 @@ void RayCaster::closest(const RayBatch& rays, HitBatch& hits) const
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    alignas(32) RTCRayHit8 packet;
+    alignas(32) RTCRayHit8 packet{};  // Embree looks at what isn't valid, too
     alignas(32) std::array<int, width> valid;
     for (std::size_t first = 0; first < n; first += width) {
         for (std::size_t k = 0; k < width; ++k) {
@@ -209,7 +209,7 @@ void RayCaster::occluded(const RayBatch& rays, std::vector<std::uint8_t>& blocke
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    alignas(32) RTCRay8 packet;
+    alignas(32) RTCRay8 packet{};
     alignas(32) std::array<int, width> valid;
     for (std::size_t first = 0; first < n; first += width) {
         for (std::size_t k = 0; k < width; ++k) {
