@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -34,8 +35,8 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     return files;
 }
 
-/// Whether the target takes the file, in less than 5 s.
-bool holds(const Target& target, const std::filesystem::path& file)
+/// Whether the target takes the file, in `allowed` seconds at most.
+bool holds(const Target& target, const std::filesystem::path& file, double allowed)
 {
     std::ifstream in(file, std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
@@ -50,28 +51,29 @@ bool holds(const Target& target, const std::filesystem::path& file)
         return false;
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    if (seconds.count() > 5) std::printf("  FAILED: took %.1f s\n", seconds.count());
-    return seconds.count() <= 5;
+    if (seconds.count() > allowed) std::printf("  FAILED: took %.1f s\n", seconds.count());
+    return seconds.count() <= allowed;
 }
 
 }  // namespace
 
-/// Gives each target, or one, the files of CORPUS/TARGET: what fuzzing found once is not found again.
+/// Gives each target, or one, the files of CORPUS/TARGET: what fuzzing found once is not found again. Each has SECONDS.
 int main(int argc, char** argv)
 {
-    if (argc != 2 && argc != 3) {
-        std::fprintf(stderr, "usage: fuzz_replay CORPUS [TARGET]\n");
+    if (argc < 2 || argc > 4) {
+        std::fprintf(stderr, "usage: fuzz_replay CORPUS [TARGET [SECONDS = 5]]\n");
         return 2;
     }
+    const double allowed = argc == 4 ? std::atof(argv[3]) : 5;
     int failures = 0;
     for (const Target& target : targets) {
-        if (argc == 3 && std::string(argv[2]) != target.name) continue;
+        if (argc > 2 && std::string(argv[2]) != target.name) continue;
         const auto files = files_in(std::filesystem::path(argv[1]) / target.name);
         if (files.empty()) {
             std::printf("%s: FAILED: no files\n", target.name);
             ++failures;
         }
-        for (const auto& file : files) failures += holds(target, file) ? 0 : 1;
+        for (const auto& file : files) failures += holds(target, file, allowed) ? 0 : 1;
     }
     return failures == 0 ? 0 : 1;
 }
